@@ -137,3 +137,52 @@ def test_ranks_of_random_constraints_against_numpy():
             expected = "holds" if dof == right else "fails"
             assert said("degrees-of-freedom", **keys, dof=str(dof)) == expected
             assert said("degrees-of-freedom", **keys, dof=str(dof), counting="positions") == expected
+
+
+DISK = {"q": ["x", "y", "theta", "phi"], "parameters": {"a": "positive"}}
+"""The disk that rolls upright, H. Goldstein, Classical Mechanics, section 1.3, as its equations are printed."""
+
+
+@pytest.mark.parametrize(
+    "printed",
+    [
+        [r"$dx - a\sin\theta\,d\phi = 0$", r"$dy + a\cos\theta\,d\phi = 0$"],
+        ["dx - a*sin(theta)*dphi = 0", "dy = -a cosθ dφ"],
+        ["d_x - a*sin(theta)*d_phi", "d_y + a*cos(theta)*d_phi"],
+    ],
+)
+def test_constraints_between_differentials_are_those_between_rates(printed):
+    rates = ["x_dot - a*sin(theta)*phi_dot", "y_dot + a*cos(theta)*phi_dot"]
+    for constraints in (printed, rates):
+        keys = {**DISK, "constraints": constraints}
+        assert verdict("constraint-class", **keys, **{"class": ["nonholonomic", "scleronomic"]}).holds
+        assert verdict("constraint-class", **keys, **{"class": ["holonomic"]}).fails
+        assert verdict("degrees-of-freedom", **keys, dof="2").holds
+        assert verdict("degrees-of-freedom", **keys, dof="3").fails
+
+
+def test_a_differential_of_the_time_makes_a_constraint_depend_on_its_motion():
+    """A plane that moves upwards with v, and one that is tilted: dz = v dt and dz = v dx."""
+    keys = {
+        "q": ["x", "z"],
+        "L": "(x_dot**2 + z_dot**2)/2",
+        "multipliers": ["lam"],
+        "parameters": {"v": "real"},
+    }
+    assert verdict("nonholonomic", **keys, constraints=["dz - v*dt = 0"], claim=["x'' = 0"]).holds
+    assert verdict("nonholonomic", **keys, constraints=["dz - v*x*dt = 0"], claim=["lam = v*x'"]).holds
+    assert verdict("nonholonomic", **keys, constraints=["dz - v*x*dx = 0"], claim=["lam = v*x'"]).fails
+
+
+@pytest.mark.parametrize("form", ["dx*dy = 0", "dx - x = 0", "dx - y_dot = 0", "dx**2"])
+def test_what_is_no_pfaffian_form_is_told(form):
+    with pytest.raises(InvalidClaim, match="each term of a Pfaffian constraint has one differential"):
+        verdict("constraint-class", q=["x", "y"], constraints=[form], **{"class": ["nonholonomic"]})
+
+
+def test_names_that_are_declared_stay_what_they_are():
+    """dx is d times x where d is a parameter; where both readings fail, that is told which comes further."""
+    keys = {"q": ["x", "y"], "parameters": {"d": "positive"}, "class": ["holonomic"]}
+    assert verdict("constraint-class", **keys, constraints=["d x - y = 0"]).holds
+    with pytest.raises(InvalidClaim, match="b is not declared"):
+        verdict("constraint-class", q=["x", "y"], constraints=["dx - b*dy = 0"], **{"class": ["holonomic"]})

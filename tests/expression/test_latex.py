@@ -691,3 +691,20 @@ def test_plain_text_never_loads_the_parser_generator():
         "p('$1 + 1', Scope()); assert 'lark' in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+@pytest.mark.parametrize(
+    ("latex", "plain"),
+    [
+        (r"$a\sin\theta\,d\phi", "a*sin(theta)*d_phi"),
+        (r"$\sin a\,d\phi", "sin(a)*d_phi"),
+        (r"$\cos\theta\,\delta\phi - \sin 2\theta d\phi", "cos(theta)*delta_phi - sin(2*theta)*d_phi"),
+    ],
+)
+def test_no_function_is_taken_of_a_differential(latex, plain):
+    theta, a, d_phi, delta_phi = sp.symbols("theta a d_phi delta_phi", real=True)
+    differentials = Scope({s.name: s for s in (theta, sp.Symbol("phi", real=True), a, d_phi, delta_phi)})
+    assert parse_expression(latex, differentials) == parse_expression(plain, differentials)
+    assert parse_expression(latex, differentials) != parse_expression(
+        plain.replace("sin(", "cos("), differentials
+    )

@@ -122,7 +122,10 @@ def _relations(reading: Reading, where: str, text: str) -> Iterator[tuple[str, E
     """Yield each relation in a constraint, with the difference of its sides; an expression alone is one that is = 0."""
     latex = text.strip().startswith("$")
     pieces = _RELATION.split(text.strip().strip("$") if latex else text)
-    sides = reading.inside(where, [f"${p}$" if latex else p for p in pieces[::2]])
+    if pieces[1::2] in ([], ["="]):
+        sides: tuple[Expr, ...] = (reading.constraint(where, text),)
+    else:
+        sides = reading.inside(where, [f"${p}$" if latex else p for p in pieces[::2]])
     if any(side.has(*(acceleration(x) for x in reading.symbols("q"))) for side in sides):
         reading.fault(where, "a constraint holds no accelerations")
     if len(sides) == 1:

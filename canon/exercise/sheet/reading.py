@@ -30,6 +30,7 @@ from canon.expression.symbols.user_input import counted
 from canon.expression.text.units import units
 from canon.frozen_mapping import FrozenMapping
 from canon.mechanics.algebra.substitution import substitute
+from canon.mechanics.hamilton.pfaffian_form import displacements, divided_by_dt
 from canon.proof.domain.domain import Domain
 from canon.proof.rungs.ladder import is_empty
 
@@ -295,11 +296,30 @@ class Reading:
         texts = _as_list(self.claim.keys[key])
         if not texts:
             self.fault(key, "at least one equation is needed")
-        return tuple(self._parse(parse_equation, text, f"{key}[{i}]") for i, text in enumerate(texts))
+        read = self.constraint if key == "constraints" else self.equation
+        return tuple(read(f"{key}[{i}]", text) for i, text in enumerate(texts))
 
     def equation(self, where: str, text: object) -> Expr:
         """Return one equation, or expression, that stands somewhere in the claim."""
         return self._parse(parse_equation, text, where)
+
+    def constraint(self, where: str, text: object) -> Expr:
+        """Return a constraint; one between differentials, a dx + b dy + c dt = 0, as that between their rates."""
+        try:
+            return self.equation(where, text)
+        except InvalidClaim as fault:
+            q = self.symbols("q")
+            names = {d.name: d for d in displacements((*q, self.time))[0] if d.name not in self.scope.names}
+            try:
+                form = self.with_names(names).equation(where, text)
+            except InvalidClaim as other:
+                raise max(fault, other, key=lambda said: said.error.column) from None
+        rates = divided_by_dt(form, q, self.time)
+        if rates is None:
+            self.fault(
+                where, "each term of a Pfaffian constraint has one differential, as in dx - a*dphi = 0"
+            )
+        return rates
 
     def table(self, key: str) -> dict[str, Expr]:
         """Return the expressions of a table {name: expression}."""

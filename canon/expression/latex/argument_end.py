@@ -71,6 +71,8 @@ class ArgumentEnd:
         """Whether an argument is complete before a factor that no argument would go on with."""
         whole = any(map(self.moves, taken)) or self.is_angle(taken[-1])
         base = unbraced(item.base) if isinstance(item, Powered) else unbraced(item)
+        if isinstance(base, Mark) and base.text in ("d", "delta"):  # no function is taken of a differential
+            return True
         if not whole:
             return False
         if isinstance(base, Mark):

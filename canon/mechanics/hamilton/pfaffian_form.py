@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.expression.symbols.symbol import velocity
 from canon.expression.symbols.user_input import counted, given_expression, given_symbols
 from canon.mechanics.algebra.all_vanish import all_vanish
-from canon.mechanics.algebra.substitution import as_tuple, entry
+from canon.mechanics.algebra.substitution import as_tuple, entry, substitute
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from canon.proof.domain.domain import Domain
     from canon.proof.domain.verdict import Verdict
 
-__all__ = ["bilinear_covariant", "canonical_covariant", "curl", "displacements", "is_exact"]
+__all__ = ["bilinear_covariant", "canonical_covariant", "curl", "displacements", "divided_by_dt", "is_exact"]
 
 
 def displacements(x: Sequence[Symbol]) -> tuple[tuple[Symbol, ...], tuple[Symbol, ...]]:
@@ -37,6 +38,26 @@ def displacements(x: Sequence[Symbol]) -> tuple[tuple[Symbol, ...], tuple[Symbol
         tuple(Symbol(f"d_{s.name}", real=True) for s in x),
         tuple(Symbol(f"delta_{s.name}", real=True) for s in x),
     )
+
+
+def divided_by_dt(form: Expr, q: Sequence[Symbol], t: Symbol) -> Expr | None:
+    """Return Σ aᵢ q̇ᵢ + b of a form Σ aᵢ dqᵢ + b dt; None where it is not linear and homogeneous in differentials.
+
+    Examples
+    --------
+    >>> from canon import coordinates
+    >>> (x, phi), t = coordinates("x phi"), Symbol("t", real=True)
+    >>> (dx, dphi, dt), _ = displacements((x, phi, t))
+    >>> divided_by_dt(dx - x*dphi - 2*dt, (x, phi), t), divided_by_dt(dx - x, (x, phi), t)
+    (-phi_dot*x + x_dot - 2, None)
+    """
+    d, _ = displacements((*q, t))
+    rates = [*map(velocity, q), sp.S.One]
+    slopes = [form.diff(x) for x in d]
+    rest = sp.expand(form - sp.Add(*(slope * x for slope, x in zip(slopes, d, strict=True))))
+    if rest != 0 or any(slope.has(*d, *rates[:-1]) for slope in slopes):
+        return None
+    return substitute(form, dict(zip(d, rates, strict=True)))
 
 
 def bilinear_covariant(
