@@ -43,8 +43,9 @@ class FrequencyAnalysis:
     amplitudes
         a_k, complex, shape (terms,), for times as they were given. Of a real signal z = Re Σ a_k exp(i ω_k t), ω_k ≥ 0.
     errors
-        How far the windows of powers p and p + 1 differ on ω_k, shape (terms,): the leakage of lines that were not
-        taken out, and noise. It is no less than rounding makes of it.
+        How far the windows of powers p and p + 1 differ on ω_k, or what the rest of the signal beside the line moves it
+        by where that is more, shape (terms,): the leakage of lines that were not taken out, and noise. It is no less
+        than rounding makes of it.
     residual
         What is left of the signal's root mean square, in parts of it.
     """
@@ -117,10 +118,11 @@ def frequency_analysis(
     rounding = 2.0**-52 * np.maximum(np.abs(found), 1 / (times[-1] - times[0]))
     order = np.argsort(-np.abs(amplitudes), kind="stable")
     turned = amplitudes * np.exp(-1j * found * middle)
+    moved = np.maximum(np.abs(finer - found), own.moved_by(left, found, amplitudes, window))
     return FrequencyAnalysis(
         found[order],
         turned[order],
-        np.maximum(np.abs(finer - found), rounding)[order],
+        np.maximum(moved, rounding)[order],
         float(np.sqrt(np.mean(np.abs(left) ** 2))) / size if size else 0.0,
     )
 
@@ -286,6 +288,24 @@ class _Signal:
         if self.real:
             return self._basis(lines) @ np.concatenate([amplitudes.real, -amplitudes.imag])
         return self._basis(lines) @ amplitudes
+
+    def moved_by(
+        self, left: npt.NDArray[Any], lines: Array, amplitudes: npt.NDArray[np.complex128], power: int
+    ) -> Array:
+        """Return by how much a rest of the signal moves lines.
+
+        A disturbance r moves the place where Σ w z exp(−iωt) is largest by |Σ w t r exp(−iωt)| / (|a| Σ w t²). At the
+        line itself r has lost what the line could take of it; beside it, within the window's width, noise is as large.
+        """
+        weights = _window(len(self.t), power) * self.t
+        spread = float(np.sum(weights * self.t))
+        width = 2 * np.pi / (self.t[-1] - self.t[0])
+        beside = width * np.array([k for k in range(-power - 2, power + 3) if k])
+        sizes = np.abs(amplitudes) / (2 if self.real else 1)
+        moments = [
+            max(abs(np.sum(weights * left * np.exp(-1j * (w + d) * self.t))) for d in beside) for w in lines
+        ]
+        return np.divide(moments, sizes * spread, out=np.zeros(len(lines)), where=sizes > 0)
 
     def _basis(self, lines: Array) -> npt.NDArray[Any]:
         angles = self.t[:, np.newaxis] * lines
