@@ -50,6 +50,8 @@ from .hamilton.hamiltonian import hamiltonian as hamiltonian
 from .hamilton.hamiltonian import has_hamiltonian as has_hamiltonian
 from .hamilton.hamiltonian import is_hamiltonian_of as is_hamiltonian_of
 from .hamilton.hamiltonian import lagrangian as lagrangian
+from .hamilton.moving_bodies import MovingBody as MovingBody
+from .hamilton.moving_bodies import moving_bodies as moving_bodies
 from .hamilton.pfaffian_form import bilinear_covariant as bilinear_covariant
 from .hamilton.pfaffian_form import canonical_covariant as canonical_covariant
 from .hamilton.pfaffian_form import displacements as displacements

@@ -409,9 +409,11 @@ def parts_of(system):
 
 @pytest.mark.slow
 def test_the_middle_moment_of_inertia_leaves_two_turns_and_a_symmetric_body_one():
-    assert [(len(p.turns), len(p.commons), len(p.kicks)) for p in map(parts_of, (FREE, TOP, BODY, SYMMETRIC))] == [
-        (2, 0, 0), (2, 1, 3), (2, 1, 3), (1, 1, 3),
-    ]  # fmt: skip
+    found = [
+        [len(p.turns), len(p.commons), *map(len, p.kicks)]
+        for p in map(parts_of, (FREE, TOP, BODY, SYMMETRIC))
+    ]
+    assert found == [[2, 0], [2, 1, 3], [2, 1, 3], [1, 1, 3]]
     spherical = rotating_body([2, 2, 2])
     assert [len(parts_of(spherical).turns), len(parts_of(spherical).commons)] == [0, 1]
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from canon.expression.graph.piecewise_form import without_pieces
-from canon.kernel.program.lie_poisson_parts import CommonTurn, LiePoissonParts, PlaneTurns, TurningBlock
+from canon.kernel.program.lie_poisson_parts import CommonTurn, Kick, LiePoissonParts, PlaneTurns, TurningBlock
 from canon.kernel.program.program import exact_value
 from canon.mechanics.algebra.substitution import entry
 
@@ -106,6 +106,7 @@ class LiePoissonSearch:
                 self._check_alone(k)
                 planes[k] = found
         kicks, commons = self._kicks(rest), self._common_turns(planes)
+        drift = self._drift(kicks, planes)
         turns = tuple(
             PlaneTurns(self.slopes[k], tuple((self.places[i], self.places[j], c) for i, j, c in found))
             for k, found in planes.items()
@@ -113,7 +114,8 @@ class LiePoissonSearch:
         )
         if not turns and not kicks and not commons:
             raise NoLiePoissonPartsError("H moves nothing: every motion rests, which needs no method")
-        return LiePoissonParts(turns, commons, kicks)
+        outer = [self._placed(kick) for kick in kicks if kick is not drift]
+        return LiePoissonParts(turns, commons, tuple(outer), self._placed(drift or {}))
 
     def _planes(self, k: int) -> tuple[Plane, ...] | None:
         """Return the planes that the flow of a function of xₖ turns; None where it moves otherwise."""
@@ -151,18 +153,58 @@ class LiePoissonSearch:
     def _variables(self, nodes: Sequence[int]) -> set[Symbol]:
         return {s for s in self.graph.all_symbols(nodes) if s in self.x}
 
-    def _kicks(self, rest: Sequence[int]) -> tuple[tuple[int, int], ...]:
-        """Return the components that the rest of H moves and their rates, which must be constant along its flow."""
-        graph, slopes = self.graph, [self.slopes[c] for c in rest]
-        rates = [row_product(graph, [row[c] for c in rest], slopes) for row in self.brackets]
-        moved = [i for i, rate in enumerate(rates) if rate != graph.zero]
-        if self._variables(rates) & {self.x[i] for i in moved}:
-            names = ", ".join(self.x[c].name for c in rest)
-            raise NoLiePoissonPartsError(
-                f"the part of H that depends on {names} has no flow that is known: LiePoissonSplitting takes a V of "
-                f"variables that commute, such as Γ or Euler's parameters; {_OTHERS}"
-            )
-        return tuple((self.places[i], rates[i]) for i in moved)
+    def _kicks(self, rest: Sequence[int]) -> list[dict[int, int]]:
+        """Return the rates that the rest of H gives to components, in parts along whose flow they are constant."""
+        groups: list[list[int]] = []
+        for part in self._uncoupled(rest):
+            if self._constant_rates(part) is None:
+                names = ", ".join(self.x[c].name for c in part)
+                raise NoLiePoissonPartsError(
+                    f"the part of H that depends on {names} has no flow that is known: LiePoissonSplitting takes a V "
+                    f"of variables that commute, such as Γ or Euler's parameters; {_OTHERS}"
+                )
+            together = (group for group in groups if self._constant_rates([*group, *part]) is not None)
+            group = next(together, None)
+            if group is None:
+                groups.append([*part])
+            else:
+                group += part
+        found = [self._constant_rates(group) for group in groups]
+        return [rates for rates in found if rates]
+
+    def _uncoupled(self, rest: Sequence[int]) -> list[list[int]]:
+        """Return the sets of variables that H couples."""
+        left, found = [*rest], list[list[int]]()
+        while left:
+            part = [left.pop(0)]
+            for c in part:
+                coupled = self._variables([self.slopes[c]])
+                more = [d for d in left if self.x[d] in coupled]
+                part += more
+                left = [d for d in left if d not in more]
+            found.append(sorted(part))
+        return found
+
+    def _constant_rates(self, part: Sequence[int]) -> dict[int, int] | None:
+        """Return the rates by what H holds of some variables; None where they change along their own flow."""
+        graph, slopes = self.graph, [self.slopes[c] for c in part]
+        rates = [row_product(graph, [row[c] for c in part], slopes) for row in self.brackets]
+        moved = {i: rate for i, rate in enumerate(rates) if rate != graph.zero}
+        return None if self._variables(rates) & {self.x[i] for i in moved} else moved
+
+    def _drift(
+        self, kicks: Sequence[dict[int, int]], planes: Mapping[int, tuple[Plane, ...]]
+    ) -> dict[int, int] | None:
+        """Return one of the kicks that neither moves nor reads what turns."""
+        turned = {i for found in planes.values() for plane in found for i in plane[:2]} | {*planes}
+        symbols = {self.x[i] for i in turned}
+        for kick in reversed(kicks):
+            if not turned & {*kick} and not self._variables([*kick.values()]) & symbols:
+                return kick
+        return None
+
+    def _placed(self, kick: Mapping[int, int]) -> Kick:
+        return tuple((self.places[i], rate) for i, rate in kick.items())
 
     # turns about M -----------------------------------------------------------------------------------
 

@@ -27,27 +27,29 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from canon.kernel.program.hamilton_equations import HamiltonEquations
-    from canon.kernel.program.lie_poisson_parts import LiePoissonParts, PlaneTurns, TurningBlock
+    from canon.kernel.program.lie_poisson_parts import Kick, LiePoissonParts, PlaneTurns, TurningBlock
 
 __all__ = ["lie_poisson_loop", "palindrome"]
 
 Stage = tuple[int, Fraction]
-"""Which part moves, and for which part of a step: turns first, then turns about M, and the kick last."""
+"""Which part moves, and for which part of a step: turns first, then turns about M, the drift, and kicks last."""
 
 _HALF = Fraction(1, 2)
 
 
 def palindrome(parts: LiePoissonParts) -> tuple[Stage, ...]:
-    """Return the parts in an order that is its own reverse: half a kick, half turns, a whole one, and back.
+    """Return the parts in an order that is its own reverse: half kicks, half turns, a whole one, and back.
 
-    Turns about M commute with the others and stand in the middle.
+    Turns about M and the drift commute with the other turns and stand in the middle.
     """
-    turns, commons = len(parts.turns), len(parts.commons)
-    order = [*((turns + commons,) if parts.kicks else ()), *range(turns)]
-    middle = order.pop() if turns or not commons else None
+    turns = len(parts.turns)
+    first = turns + len(parts.commons) + bool(parts.drift)
+    commuting = range(turns, first)
+    order = [*range(first, first + len(parts.kicks)), *range(turns)]
+    middle = [order.pop()] if turns or not commuting else []
     halves = [(part, _HALF) for part in order]
-    whole = [*(() if middle is None else (middle,)), *range(turns, turns + commons)]
-    return (*halves, *((part, Fraction(1)) for part in whole), *reversed(halves))
+    whole = [(part, Fraction(1)) for part in (*middle, *commuting)]
+    return (*halves, *whole, *reversed(halves))
 
 
 def lie_poisson_loop(
@@ -100,15 +102,16 @@ class _Flows:
             for block in common.blocks:
                 self._turn_block(block, self.w.algebra("mul", time, self.w.constant(common.rate)))
         else:
-            self._kick(time)
+            kicks = [*((self.parts.drift,) if self.parts.drift else ()), *self.parts.kicks]
+            self._kick(kicks[part - len(turns) - len(commons)], time)
 
     def _evaluated(self, nodes: Sequence[int]) -> list[str]:
         w, size = self.w, 2 * len(self.system.q)
         state = [w.load(self.y, i) for i in range(size)]
         return w.program(self.system.program(nodes), [*state, w.load("%c", 0)])
 
-    def _kick(self, time: str) -> None:
-        components, nodes = zip(*self.parts.kicks, strict=True)
+    def _kick(self, kick: Kick, time: str) -> None:
+        components, nodes = zip(*kick, strict=True)
         for i, rate in zip(components, self._evaluated(nodes), strict=True):
             increase(self.w, self.y, self.e, str(i), time, rate)
 

@@ -8,7 +8,11 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from fractions import Fraction
 
-__all__ = ["CommonTurn", "LiePoissonParts", "PlaneTurns", "TurningBlock"]
+__all__ = ["CommonTurn", "Kick", "LiePoissonParts", "PlaneTurns", "TurningBlock"]
+
+
+Kick = tuple[tuple[int, int], ...]
+"""Components of a state, and the nodes of their rates."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,9 +69,12 @@ class LiePoissonParts:
     commons
         The parts that turn about M; they commute with all turns.
     kicks
-        Components of a state and the nodes of their rates by what is left of H, which is constant along its flow.
+        Of each part that is left components of a state and the nodes of their rates, constant along its flow.
+    drift
+        The same of one that commutes with all turns, as the motion of centres of mass does.
     """
 
     turns: tuple[PlaneTurns, ...]
     commons: tuple[CommonTurn, ...]
-    kicks: tuple[tuple[int, int], ...]
+    kicks: tuple[Kick, ...]
+    drift: Kick = ()

@@ -105,15 +105,13 @@ class PoissonSystem:
 
     def bracket(self, f: Expr, g: Expr) -> Expr:
         """Return {f, g} = Σ ∂f/∂xᵢ Πᵢⱼ ∂g/∂xⱼ."""
-        first, second = ([given_expression(h).diff(x) for x in self.x] for h in (f, g))
+        first, second = self._slopes(given_expression(f)), self._slopes(given_expression(g))
         return sp.Add(
-            *(
-                a * entry(self.structure, i, j) * b
-                for i, a in enumerate(first)
-                for j, b in enumerate(second)
-                if a != 0 and b != 0
-            )
+            *(a * entry(self.structure, i, j) * b for i, a in first.items() for j, b in second.items())
         )
+
+    def _slopes(self, f: Expr) -> dict[int, Expr]:
+        return {i: f.diff(x) for i, x in enumerate(self.x) if x in f.free_symbols}
 
     def rate(self, u: Expr) -> Expr:
         """Return du/dt = {u, H} + ∂u/∂t."""
