@@ -319,3 +319,17 @@ def test_the_error_of_what_rests_in_a_kink_is_known_at_once():
     assert not motion["x"].any()
     assert error[[0, 2]].max() < 1e-300
     assert 0 < error[1].max() < 1e-14
+
+
+@pytest.mark.parametrize("method", ["taylor", "dop853"])
+def test_a_damper_whose_force_has_no_series_where_the_motion_turns(method):
+    """DOP853 said that the motion is not determined, and Taylor's way back ended in an error of heyoka's."""
+    damped = Lagrangian(
+        x.dot**2 / 2 - x**2 / 2, [x], forces=[-(sp.Abs(x.dot) ** sp.Rational(3, 2)) * sp.sign(x.dot) / 5]
+    )
+    motion = propagate(damped, (0, 7), [1.0, 0.0], method=method)
+    back = propagate(damped, (7, 0), motion.final, method=method)
+    np.testing.assert_allclose(back.final, [1, 0], atol=1e-9)
+    turn = np.flatnonzero(np.diff(np.sign(motion.v[0, 1:]))) + 1
+    np.testing.assert_allclose(motion.t[turn], [3.158, 6.30], atol=0.02)
+    assert abs(motion.energy_error).max() < 1e-10

@@ -5,6 +5,7 @@ Every regime has an integrator of its own, compiled when the orbit first comes t
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -65,6 +66,7 @@ class KinkedOrbit:
     signs: Signs | None = None
     on_zero: bool = False
     put_off: bool = False
+    at_kink: tuple[Any, Any] = (None, None)
     pieces: list[Any] = field(default_factory=list[Any])
 
     @property
@@ -102,12 +104,25 @@ class KinkedOrbit:
             in_a_row = in_a_row + 1 if self._now() == began else 0
             if in_a_row > _PILE:
                 raise self._piled_up()
+            short = self.state.copy(), self._now()
+            self.at_kink = short
             if self._meet(own):
                 rows.append(self.state.copy())
                 return Slice(self._rows(rows), steps, seconds, None, stopped=True)
             if self.put_off:
                 left, self.put_off = self._put_off(rows, grid, left), False
+            left = self._passed_on_the_way(rows, left, short)
         return Slice(self._rows(rows), steps, seconds, None, stopped=False)
+
+    def _passed_on_the_way(self, rows: list[Any], left: list[Any], short: tuple[Any, Any]) -> list[Any]:
+        """Give samples between the end of a regime and its zero the states there; return the times that are left.
+
+        A regime without a series at its zero ends a little before, and the way that is left is straight.
+        """
+        (before, begun), (after, end) = short, self.at_kink
+        passed = [t for t in left if (t - self._now()) * self.regimes.taylor_events.forward < 0]
+        rows += [before + (t - begun) / (end - begun) * (after - before) for t in passed]
+        return left[len(passed) :]
 
     def _put_off(self, rows: list[Any], grid: list[Any], left: list[Any]) -> list[Any]:
         """Give the samples at this very instant the momenta after it, and return the times that are left."""
@@ -139,7 +154,7 @@ class KinkedOrbit:
         before, clock = self.state.copy(), self.dtime
         for _ in range(2):
             own = self.regimes.of(self.signs)
-            self._leave_weak_zero()
+            self._leave_weak_zero(left)
             orbit, pieces = self._placed(own), len(own.orbit.pieces)
             if orbit.free is None:  # nothing ends this regime
                 return own, 0, []
@@ -214,6 +229,7 @@ class KinkedOrbit:
         )
         if HELD not in self.signs:
             self._put_on_zero(kinks.regime(self.signs).functions[k])
+            self.at_kink = self.state.copy(), self._now()
         at = self._place()
         following = passage(kinks, self.signs, k, at, forward)
         if kinks.system.variations:
@@ -264,8 +280,11 @@ class KinkedOrbit:
         wanted = self.signs[k] * _BEYOND * at.size(system, g)
         self._move(self.state.copy(), self.dtime, np.array(rates), (wanted - at.value(system, g)) / speed)
 
-    def _leave_weak_zero(self) -> bool:
-        """Leave a zero where the rates have no Taylor series, by a step that Euler's and the midpoint rule agree on."""
+    def _leave_weak_zero(self, left: list[Any]) -> bool:
+        """Leave a zero where the rates have no Taylor series, by a step that Euler's and the midpoint rule agree on.
+
+        It goes no farther than half of the way to the next of the times that are left.
+        """
         assert self.signs is not None
         regime, own = self.regimes.kinks.regime(self.signs), self.regimes.taylor_events
         at, system = self._place(), regime.system
@@ -276,7 +295,8 @@ class KinkedOrbit:
         before, clock, rates = self.state.copy(), self.dtime, [*system.velocity, *system.force]
         first = np.nan_to_num(at.values(system, rates))  # rounding may have it a little beyond
         size = float(abs(before.astype(np.float64)).max()) * float(own.size) or 1.0
-        length = _LONGEST_EULER * size / float(abs(first).max()) * own.forward
+        ahead = next((float(abs(t - self._now())) for t in left if t != self._now()), math.inf)
+        length = min(_LONGEST_EULER * size / float(abs(first).max()), ahead / 2) * own.forward
         middle = first
         for _ in range(_HALVINGS):
             self._move(before, clock, first, length / 2)

@@ -173,6 +173,10 @@ def _consistent(kinks: Kinks, signs: Signs, zero: Sequence[int], at: Place, forw
         for order in range(1, _DERIVATIVES + 1):
             node = regime.rate(node)
             value = at.value(regime.system, node)
+            if order == 1 and not math.isfinite(
+                value
+            ):  # rounding is beyond a zero of |v|^(3/2): there both sides have one
+                value = at.value(kinks.system, _rate_on_both_sides(kinks, k))
             if order == 1 and _only_touches(regime, zero_node, node, value, at):
                 continue
             if not math.isfinite(value) or abs(value) <= _ROUNDING * at.size(regime.system, node):
@@ -181,6 +185,13 @@ def _consistent(kinks: Kinks, signs: Signs, zero: Sequence[int], at: Place, forw
                 return False
             break
     return True
+
+
+def _rate_on_both_sides(kinks: Kinks, k: int) -> int:
+    system, graph = kinks.system, kinks.system.graph
+    slopes = graph.gradient(kinks.functions[k], system.inputs)
+    rates = (*system.velocity, *system.force, graph.one)
+    return graph.add([graph.mul(pair) for pair in zip(slopes, rates, strict=True)])
 
 
 def _only_touches(regime: Regime, g: int, rate: int, speed: float, at: Place) -> bool:
