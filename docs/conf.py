@@ -64,6 +64,7 @@ nb_execution_mode = "force"  # a cached page would not know that canon has chang
 nb_execution_raise_on_error = True
 nb_execution_timeout = 300
 nb_merge_streams = True
+nb_render_markdown_format = "myst"  # CommonMark, the default, has no tables: they stood there as pipes
 
 JOBS = ("derive", "transform", "reduce", "judge", "integrate", "measure", "explore", "bring_your_own")
 """Folders of worked examples, in the order in which one would read them; the others hold sheets and graders."""
