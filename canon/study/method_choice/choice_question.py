@@ -20,10 +20,11 @@ if TYPE_CHECKING:
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.flow.trajectory import Trajectory
 
-__all__ = ["PLACES", "Question"]
+__all__ = ["FINER", "PLACES", "Question"]
 
-PLACES = 64
-"""Times at which positions are compared with those of the reference."""
+PLACES, FINER = 64, 8
+"""Times at which positions are compared with those of the reference, and in how many parts of their distance too, where
+steps allow: errors have peaks at close passes."""
 
 REFERENCE, FINE_REFERENCE = Taylor(1e-19), Taylor(1e-28)
 """Methods of the references for positions."""
@@ -89,7 +90,7 @@ class Question:
         return run_quietly(motion.by(setting))
 
     def positions(self, span: float, precision: str) -> tuple[Array, Array]:
-        """Return the reference's coordinates at PLACES + 1 even times as sums of doubles, each (n, times).
+        """Return the reference's coordinates at PLACES · FINER + 1 even times as sums of doubles, each (n, times).
 
         The reference of runs in doubles has 64 bits, or 113 where the platform has no such numbers; that of
         runs in more digits has 113.
@@ -98,6 +99,6 @@ class Question:
         if (span, plain) not in self._known:
             digits = "extended" if plain and EXTENDED.available() else "quad"
             reference = Setting(REFERENCE if plain else FINE_REFERENCE, precision=digits)
-            found = self.run(reference, span, PLACES)
+            found = self.run(reference, span, PLACES * FINER)
             self._known[span, plain] = found.q, found.carried[: len(found.q)]
         return self._known[span, plain]

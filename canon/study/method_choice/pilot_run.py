@@ -15,7 +15,7 @@ from canon.flow.method.setting import Setting
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.system_request import is_hamiltonian
 from canon.study.errors import StudyError
-from canon.study.method_choice.choice_question import PLACES, Question
+from canon.study.method_choice.choice_question import FINER, PLACES, Question
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -188,29 +188,38 @@ def _sampled(question: Question, setting: Setting, span: float, windows: int) ->
 
 def _against_reference(question: Question, setting: Setting, span: float) -> Pilot:
     """Compare coordinates with the reference; a step is adjusted to meet its times."""
-    times = None
+    times, places = None, PLACES * FINER
     if setting.method.engine is FICTITIOUS_TIME:  # its samples are even in its own time
-        times = question.since + np.linspace(0.0, span, PLACES + 1)[1:]
+        times = question.since + np.linspace(0.0, span, places + 1)[1:]
     elif setting.method.engine is FIXED_STEPS:
-        steps = PLACES * max(1, round(span / setting.knob / PLACES))
-        setting = replace(setting, step=span / steps)
-    true, rest = question.positions(span, setting.arithmetic)
-    found = question.run(setting, span, PLACES, times=times)
-    if found.t.size == PLACES:
+        between = _whole_steps(span / setting.knob / PLACES)
+        places = PLACES * math.gcd(between, FINER)
+        setting = replace(setting, step=span / (PLACES * between))
+    true, rest = (
+        part[:, :: PLACES * FINER // places] for part in question.positions(span, setting.arithmetic)
+    )
+    found = question.run(setting, span, places, times=times)
+    if found.t.size == places:
         true, rest = true[:, 1:], rest[:, 1:]
     off = (found.q - true) + (found.carried[: len(found.q)] - rest)
     size = float(np.linalg.norm(true, axis=0).max())
-    away = np.linalg.norm(off, axis=0)[-PLACES:] / size
+    away = np.linalg.norm(off, axis=0)[-places:] / size
     return Pilot(
         setting=setting,
         span=span,
         steps=found.steps,
         evaluations=found.evaluations,
-        t=found.t[-PLACES:] - question.since,
+        t=found.t[-places:] - question.since,
         mean=away,
         largest=away,
         energy=_energy(found),
     )
+
+
+def _whole_steps(wanted: float) -> int:
+    """Return how many steps to take between two places, of which many can be looked at and none is much longer."""
+    quantum = next((q for q, least in ((8, 32), (4, 6), (2, 3)) if wanted >= least), 1)
+    return quantum * max(1, round(wanted / quantum))
 
 
 def _energy(found: Trajectory, largest: float | None = None) -> float:
