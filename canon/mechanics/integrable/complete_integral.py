@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
@@ -240,6 +240,9 @@ def _integral(
     H: Hamiltonian, E: Symbol, domain: Domain, separable: Verdict, chart: Chart | None, budget: float
 ) -> CompleteIntegral:
     momenta, constants = separated_momenta(H, E, domain)
+    domain = replace(
+        domain, conditions=(*domain.conditions, *(m.where for m in momenta if m.where != sp.true))
+    )
     found = CompleteIntegral(
         H, momenta, tuple(c for c, _ in constants), dict(constants), separable, chart, domain
     )

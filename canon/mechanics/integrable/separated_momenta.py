@@ -21,6 +21,8 @@ from canon.proof.vanish import vanishes
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from sympy.logic.boolalg import Boolean
+
     from canon.mechanics.hamilton.hamiltonian import Hamiltonian
     from canon.proof.domain.domain import Domain
 
@@ -47,6 +49,8 @@ class SeparatedMomentum:
         The constant that this equation defines.
     defined_as
         That constant as a function of (q, p).
+    where
+        What holds along the motion besides: that a root which was squared is positive.
     """
 
     q: Symbol
@@ -55,6 +59,7 @@ class SeparatedMomentum:
     square: Expr | None
     constant: Symbol | None = None
     defined_as: Expr | None = None
+    where: Boolean = sp.true
 
     def value(self, sign: int = 1) -> Expr:
         """Return the momentum, with the sign of the root."""
@@ -158,7 +163,9 @@ def _inner(work: _Separation) -> bool:
         momentum = _solved(f - constant, q, p)
         if momentum is None:
             return False
-        work.found.append(SeparatedMomentum(q, p, momentum.shift, momentum.square, constant, f))
+        work.found.append(
+            SeparatedMomentum(q, p, momentum.shift, momentum.square, constant, f, momentum.where)
+        )
         work.rest = outer * constant + outer * split[1]
         work.left.remove((q, p))
         return True
@@ -244,7 +251,7 @@ def _share_out(work: _Separation, functions: Sequence[Expr]) -> bool:
         solved = _solved(f - constant, q, p)
         if solved is None:
             return False
-        momenta.append(SeparatedMomentum(q, p, solved.shift, solved.square, constant, f))
+        momenta.append(SeparatedMomentum(q, p, solved.shift, solved.square, constant, f, solved.where))
     last = _solved(functions[-1] - total, *work.left[-1])
     if last is None:
         return False
@@ -274,13 +281,28 @@ def _quadratic(f: Expr, p: Symbol) -> tuple[Expr, Expr, Expr] | None:
 
 
 def _solved(equation: Expr, q: Symbol, p: Symbol) -> SeparatedMomentum | None:
-    """Return the solution of an equation that is linear or quadratic in p."""
-    coefficients = _quadratic(equation, p)
+    """Return the solution of an equation that is linear or quadratic in p, or in whose only root p stands so."""
+    coefficients, where = _quadratic(equation, p), sp.true
+    if coefficients is None:
+        squared, where = _without_root(equation, p)
+        coefficients = _quadratic(squared, p)
     if coefficients is None:
         return None
     a, b, c = coefficients
     if a == 0:
-        return None if b == 0 else SeparatedMomentum(q, p, -c / b, None)
+        return None if b == 0 else SeparatedMomentum(q, p, -c / b, None, where=where)
     shift = -b / (2 * a)
     over_a = sp.Add(*(term / a for term in cast("Sequence[Expr]", sp.Add.make_args(c))))
-    return SeparatedMomentum(q, p, shift, shift**2 - over_a)
+    square = shift**2 - over_a
+    return SeparatedMomentum(q, p, shift, square if where == sp.true else sp.collect(square, q), where=where)
+
+
+def _without_root(equation: Expr, p: Symbol) -> tuple[Expr, Boolean]:
+    """Return B − r² of an equation √B = r with p in B alone, as that of a relativistic energy, and that r > 0."""
+    rest, root = equation.as_independent(p, as_Add=True)
+    factor, function = root.as_independent(p, as_Add=False)
+    B, exponent = function.as_base_exp()
+    if exponent != sp.S.Half:
+        return equation, sp.true
+    r = -rest / factor
+    return sp.expand(B - r**2), sp.Gt(r, 0)

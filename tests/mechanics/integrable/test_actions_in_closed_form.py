@@ -115,6 +115,30 @@ def test_a_hamiltonian_linear_in_the_momentum_turns(H, formula):
     assert vanishes(found.J - formula.subs(w, 2 * w), inside).fails
 
 
+def test_a_relativistic_energy_is_solved_for_the_momentum_where_its_root_is_positive():
+    """√(m² + p²) + V = E has p² = (E − V)² − m² where E > V; where E < V that is a solution of another equation."""
+    integral = hamilton_jacobi(Hamiltonian(sp.sqrt(m**2 + p**2) - D * q, q, p))
+    (momentum,), e = integral.momenta, integral.energy
+    assert vanishes(momentum.square - (e + D * q) ** 2 + m**2).holds
+    assert vanishes(momentum.square - (e - D * q) ** 2 + m**2).fails
+    assert momentum.where == (e + D * q > 0)
+    assert integral.is_complete_integral().holds
+
+
+@pytest.mark.slow
+def test_sommerfelds_ellipse_turns():
+    """J_r = kE/(c√(c⁴ − E²)) − √(L² − k²/c²), m = 1 (A. Sommerfeld, Ann. Physik 51 (1916) 1, c = 1 here)."""
+    H = Hamiltonian(sp.sqrt(1 + p_r**2 + p_phi**2 / r**2) - k / r, *PLANE)
+    start = {r: 1, phi: 0, p_r: third, p_phi: 1}
+    radial, turning = closed_actions(action_variables(hamilton_jacobi(H), start, {k: half}, digits=20))
+    inside = Domain((E > 0, E < 1, k < L))
+    assert radial.name == "Kepler"
+    assert turning.J == L
+    formula = k * E / sp.sqrt(1 - E**2) - sp.sqrt(L**2 - k**2)
+    assert vanishes(radial.J - formula, inside).holds
+    assert vanishes(radial.J - formula.subs(L**2 - k**2, L**2), inside).fails
+
+
 def test_a_rate_that_vanishes_is_no_rotation():
     integral = hamilton_jacobi(Hamiltonian(p * (1 + 2 * sp.cos(q)), q, p))
     with pytest.raises(NoCycleError, match="rotation of q"):
