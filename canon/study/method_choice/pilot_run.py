@@ -189,7 +189,10 @@ def _sampled(question: Question, setting: Setting, span: float, windows: int) ->
 def _against_reference(question: Question, setting: Setting, span: float) -> Pilot:
     """Compare coordinates with the reference; a step is adjusted to meet its times."""
     times, places = None, PLACES * FINER
-    if setting.method.engine is FICTITIOUS_TIME:  # its samples are even in its own time
+    if (
+        setting.method.engine is FICTITIOUS_TIME
+    ):  # its samples are even in its own time; to land at others takes longer
+        places = 2 * PLACES
         times = question.since + np.linspace(0.0, span, places + 1)[1:]
     elif setting.method.engine is FIXED_STEPS:
         between = _whole_steps(span / setting.knob / PLACES)
