@@ -78,10 +78,12 @@ from .integrable.actions import ActionVariables as ActionVariables
 from .integrable.actions import action_variables as action_variables
 from .integrable.actions import angles as angles
 from .integrable.actions import frequencies as frequencies
-from .integrable.actions_in_closed_form import ClosedAction as ClosedAction
-from .integrable.actions_in_closed_form import closed_actions as closed_actions
 from .integrable.ball_function import NotHolomorphicError as NotHolomorphicError
 from .integrable.classical_coordinates import Chart as Chart
+from .integrable.closed_form.actions_in_closed_form import ClosedAction as ClosedAction
+from .integrable.closed_form.actions_in_closed_form import closed_actions as closed_actions
+from .integrable.closed_form.angles_in_closed_form import ClosedAngle as ClosedAngle
+from .integrable.closed_form.angles_in_closed_form import closed_angles as closed_angles
 from .integrable.complete_integral import CompleteIntegral as CompleteIntegral
 from .integrable.complete_integral import hamilton_jacobi as hamilton_jacobi
 from .integrable.cycles import Cycle as Cycle
@@ -166,8 +168,8 @@ from .perturbation.secular.adiabatic_series import AdiabaticInvariant as Adiabat
 from .perturbation.secular.adiabatic_series import adiabatic_invariants as adiabatic_invariants
 from .perturbation.secular.anomaly_average import AnomalyAverage as AnomalyAverage
 from .perturbation.secular.anomaly_average import average_over_anomaly as average_over_anomaly
+from .perturbation.secular.von_zeipel import von_zeipel_function as von_zeipel_function
 from .perturbation.taylor_parts import NotAnalyticError as NotAnalyticError
-from .perturbation.von_zeipel import von_zeipel_function as von_zeipel_function
 from .reduction.constrained_motion import MotionOnManifold as MotionOnManifold
 from .reduction.constrained_motion import constrained_motions as constrained_motions
 from .reduction.contact import multiplier_along as multiplier_along

@@ -2,10 +2,12 @@ from .actions import ActionVariables as ActionVariables
 from .actions import action_variables as action_variables
 from .actions import angles as angles
 from .actions import frequencies as frequencies
-from .actions_in_closed_form import ClosedAction as ClosedAction
-from .actions_in_closed_form import closed_actions as closed_actions
 from .ball_function import NotHolomorphicError as NotHolomorphicError
 from .classical_coordinates import Chart as Chart
+from .closed_form.actions_in_closed_form import ClosedAction as ClosedAction
+from .closed_form.actions_in_closed_form import closed_actions as closed_actions
+from .closed_form.angles_in_closed_form import ClosedAngle as ClosedAngle
+from .closed_form.angles_in_closed_form import closed_angles as closed_angles
 from .complete_integral import CompleteIntegral as CompleteIntegral
 from .complete_integral import hamilton_jacobi as hamilton_jacobi
 from .cycles import Cycle as Cycle

@@ -21,4 +21,4 @@ from .secular.adiabatic_series import AdiabaticInvariant as AdiabaticInvariant
 from .secular.adiabatic_series import adiabatic_invariants as adiabatic_invariants
 from .secular.anomaly_average import AnomalyAverage as AnomalyAverage
 from .secular.anomaly_average import average_over_anomaly as average_over_anomaly
-from .von_zeipel import von_zeipel_function as von_zeipel_function
+from .secular.von_zeipel import von_zeipel_function as von_zeipel_function

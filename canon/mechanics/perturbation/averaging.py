@@ -19,7 +19,7 @@ from canon.mechanics.perturbation.fourier_series import (
 )
 from canon.mechanics.perturbation.lie_series import lie_deprit, powers_of
 from canon.mechanics.perturbation.normal_form_step import Module
-from canon.mechanics.perturbation.von_zeipel import von_zeipel_function
+from canon.mechanics.perturbation.secular.von_zeipel import von_zeipel_function
 from canon.proof.domain.verdict import Status, Verdict, all_hold
 from canon.proof.vanish import vanishes
 

@@ -9,7 +9,7 @@ from canon.exercise.claim_verdict import examine
 from canon.exercise.sheet.sheet import Claim
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.integrable.actions import action_variables, angles
-from canon.mechanics.integrable.actions_in_closed_form import closed_actions
+from canon.mechanics.integrable.closed_form.actions_in_closed_form import closed_actions
 from canon.mechanics.integrable.complete_integral import hamilton_jacobi
 from canon.proof.domain.balls import precision, value
 from canon.proof.domain.domain import Domain

@@ -11,7 +11,7 @@ from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.hamilton.bracket import poisson_bracket
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.integrable.actions import action_variables
-from canon.mechanics.integrable.actions_in_closed_form import closed_actions
+from canon.mechanics.integrable.closed_form.actions_in_closed_form import closed_actions
 from canon.mechanics.integrable.complete_integral import hamilton_jacobi
 from canon.proof.domain.balls import precision, value
 from canon.proof.vanish import vanishes

@@ -5,7 +5,7 @@ import sympy as sp
 
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.perturbation.averaging import average
-from canon.mechanics.perturbation.von_zeipel import von_zeipel_function
+from canon.mechanics.perturbation.secular.von_zeipel import von_zeipel_function
 
 theta, phi, I, J, x, y, eps = sp.symbols("theta phi I J x y epsilon", positive=True)
 QUARTIC = Hamiltonian(I + eps * I**2 * sp.cos(theta) ** 4, theta, I)

@@ -27,8 +27,8 @@ from canon.mechanics.algebra.constraint_manifold import transported
 from canon.mechanics.algebra.substitution import exchanged, substitute
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.integrable.actions import ActionVariables, action_variables
-from canon.mechanics.integrable.actions_in_closed_form import closed_actions
 from canon.mechanics.integrable.ball_function import NotHolomorphicError
+from canon.mechanics.integrable.closed_form.actions_in_closed_form import closed_actions
 from canon.mechanics.integrable.complete_integral import CompleteIntegral, hamilton_jacobi
 from canon.mechanics.integrable.cycles import ball_of
 from canon.mechanics.integrable.separated_momenta import NotSeparatedError

@@ -1,1 +1,1 @@
-"""Averages over the mean anomaly of Kepler's ellipse in closed form, without a series in the eccentricity."""
+"""Secular theory: averages over the mean anomaly in closed form, adiabatic invariants, von Zeipel's function."""

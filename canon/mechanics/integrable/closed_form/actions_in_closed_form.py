@@ -86,23 +86,23 @@ def closed_actions(
     [sqrt(2)*k*sqrt(m)/(2*sqrt(-E)) - Abs(alpha_phi), alpha_phi]
     """
     given_kind(torus, ActionVariables, "what closed_actions() takes", "action_variables() returns it")
-    recognised = [_recognised(m, c) for m, c in zip(torus.integral.momenta, torus.cycles, strict=True)]
+    known = [recognised(m, c) for m, c in zip(torus.integral.momenta, torus.cycles, strict=True)]
     if most_operations is not None:
-        recognised = [f if f is None or sp.count_ops(f[0]) <= most_operations else None for f in recognised]
-    if not any(found is not None for found in recognised):
-        return tuple(None for _ in recognised)
-    tori = _neighbours(torus)
+        known = [f if f is None or sp.count_ops(f[0]) <= most_operations else None for f in known]
+    if not any(found is not None for found in known):
+        return tuple(None for _ in known)
+    tori = neighbouring_tori(torus)
     if len(tori) < TORI:
-        return tuple(None for _ in recognised)
+        return tuple(None for _ in known)
     return tuple(
         ClosedAction(found[0], found[1], len(tori), torus.digits)
         if found is not None and all(_agrees(found[0], i, other) for other in tori)
         else None
-        for i, found in enumerate(recognised)
+        for i, found in enumerate(known)
     )
 
 
-def _neighbours(torus: ActionVariables) -> list[ActionVariables]:
+def neighbouring_tori(torus: ActionVariables) -> list[ActionVariables]:
     """Return three tori of the same kind: that of the motion, and two with other momenta."""
     starts = {*torus.integral.H.q, *torus.integral.H.p}
     parameters = {s: v for s, v in torus.values.items() if s not in starts | {*torus.integral.constants}}
@@ -134,15 +134,15 @@ def _agrees(J: Expr, i: int, torus: ActionVariables) -> bool:
     due = [(J, torus.J[i])]
     due += [(J.diff(c), torus.slopes[i][j]) for j, c in enumerate(torus.integral.constants)]
     with precision(int(torus.digits * 3.33) + GUARD_BITS):
-        return all(_value(f, torus.values).overlaps(ball) for f, ball in due)
+        return all(real_ball(f, torus.values).overlaps(ball) for f, ball in due)
 
 
-def _value(f: Expr, values: Mapping[Symbol, Expr]) -> arb:
+def real_ball(f: Expr, values: Mapping[Symbol, Expr]) -> arb:
     ball = ball_of(substitute(f, values))
     return ball.real if ball.imag.contains(0) else arb("nan")
 
 
-def _recognised(momentum: SeparatedMomentum, cycle: Cycle) -> tuple[Expr, str] | None:
+def recognised(momentum: SeparatedMomentum, cycle: Cycle) -> tuple[Expr, str] | None:
     """Return a known integral whose terms are those of p², and its name."""
     q, square = momentum.q, momentum.square
     if cycle.kind is CycleKind.IGNORABLE:
@@ -152,7 +152,7 @@ def _recognised(momentum: SeparatedMomentum, cycle: Cycle) -> tuple[Expr, str] |
         return _linear(momentum.shift, q)
     if momentum.shift != 0:
         return None
-    terms = _terms(_in_reciprocals(_about_its_kink(square, q)), q)
+    terms = terms_in(_in_reciprocals(about_its_kink(square, q)), q)
     A = terms.pop(sp.S.One, sp.S.Zero)
     if cycle.kind is CycleKind.ROTATION:
         return _pendulum(A, terms, q, cycle)
@@ -163,7 +163,7 @@ def _recognised(momentum: SeparatedMomentum, cycle: Cycle) -> tuple[Expr, str] |
     return _quartic_well(A, terms, q, cycle) or _pendulum(A, terms, q, cycle) or _on_the_sphere(square, q)
 
 
-def _about_its_kink(f: Expr, q: Symbol) -> Expr:
+def about_its_kink(f: Expr, q: Symbol) -> Expr:
     """Return f(q + a) where f holds |q − a| and no other modulus: the loop integral is the same."""
     inside = {part.args[0] for part in f.atoms(sp.Abs) if part.has(q)}
     if len(inside) != 1:
@@ -182,7 +182,7 @@ def _in_reciprocals(f: Expr) -> Expr:
     return cast("Expr", f.xreplace(known))
 
 
-def _terms(f: Expr, q: Symbol) -> dict[Expr, Expr]:
+def terms_in(f: Expr, q: Symbol) -> dict[Expr, Expr]:
     """Return the coefficient of each function of q in f."""
     terms: dict[Expr, Expr] = {}
     for term in sp.Add.make_args(sp.expand(f)):
@@ -307,7 +307,7 @@ def _on_the_sphere(square: Expr, q: Symbol) -> tuple[Expr, str] | None:
     if not P.LC().is_positive:
         return None
     alpha, beta, _, _ = P.all_coeffs()
-    z1, z2, z3 = _three_roots(P)
+    z1, z2, z3 = three_roots(P)
     m, g = (z2 - z1) / (z3 - z1), 2 / sqrt(alpha * (z3 - z1))
     above = P.eval(1) * sp.elliptic_pi((z2 - z1) / (1 - z1), m) / (1 - z1)
     below = P.eval(-1) * sp.elliptic_pi((z1 - z2) / (1 + z1), m) / (1 + z1)
@@ -316,7 +316,7 @@ def _on_the_sphere(square: Expr, q: Symbol) -> tuple[Expr, str] | None:
     return g / sp.pi * (linear + (above + below) / 2), "motion on a sphere"
 
 
-def _three_roots(P: sp.Poly) -> tuple[Expr, Expr, Expr]:
+def three_roots(P: sp.Poly) -> tuple[Expr, Expr, Expr]:
     """Return the roots of a cubic that has three real ones, in their order, by Viète's cosines."""
     _, b, c, d = P.monic().all_coeffs()
     p, r = c - b**2 / 3, 2 * b**3 / 27 - b * c / 3 + d
