@@ -66,7 +66,9 @@ class Builder:
                 and name.rpartition("_")[2] not in bound
             ):
                 what = "is not a function of the language" if called else "is not declared"
-                yield LanguageError(self.text, part.column, f"{name} {what}", self.scope.near(name))
+                yield LanguageError(
+                    self.text, part.column, f"{name} {what}", self.scope.near(name, "(" * called)
+                )
 
     def expression(self, node: syntax.Node) -> Expr:
         """Return the expression of a tree, refusing what SymPy can't build or what is undefined everywhere."""
@@ -159,7 +161,7 @@ class Builder:
         if name in (INTEGRAL, SUM, PRODUCT):
             return over_ranges(self, node)
         if name not in FUNCTIONS:
-            self.refuse(node, f"{name} is not a function of the language", self.scope.near(name))
+            self.refuse(node, f"{name} is not a function of the language", self.scope.near(name, "("))
         return self.of_vocabulary(node)
 
     def of_vocabulary(self, node: syntax.Call) -> Expr:

@@ -708,3 +708,10 @@ def test_no_function_is_taken_of_a_differential(latex, plain):
     assert parse_expression(latex, differentials) != parse_expression(
         plain.replace("sin(", "cos("), differentials
     )
+
+
+@pytest.mark.parametrize("text", ["pi/(2*K(k))", r"$\frac{\pi}{2K(k)}", r"$\operatorname{K}(k)"])
+def test_legendres_letters_are_told_what_to_write(text):
+    """K(k) of books has the modulus for its argument, elliptic_k the parameter: it is not guessed which is meant."""
+    assert "write elliptic_k(m) of the parameter m = k²" in fault(text).remedy
+    assert "elliptic" not in fault(text.replace("(k)", "")).remedy

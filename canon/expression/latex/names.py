@@ -303,7 +303,7 @@ class Names:
         elif rest == "pi":
             remedy = r"write \pi"
         else:
-            remedy = self.scope.near(name)
+            remedy = self.scope.near(name, self.text[column - 1 + start + len(rest) :])
         self._refuse(column + start, f"{name} is not declared", remedy)
 
     def no_rate(self, name: str, column: int) -> NoReturn:

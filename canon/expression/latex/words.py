@@ -221,9 +221,8 @@ class _Reader:
             plain = self.names.spelled(found, pieces, 0, column)
             if plain:
                 self.names.no_rate(plain.text if isinstance(plain, Name) else plain.name, column)
-            self.refuse(
-                column, f"{shown} is not declared", self.names.scope.near(spellings(found[-1], pieces)[0])
-            )
+            remedy = self.names.scope.near(spellings(found[-1], pieces)[0], self.text[self.at :])
+            self.refuse(column, f"{shown} is not declared", remedy)
         self.put([item], column)
         self.out.raised(after.power)
 

@@ -11,7 +11,7 @@ from sympy import Symbol
 
 from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import Coordinate, Momentum, Rate, acceleration, time, velocity
-from canon.expression.text.vocabulary import CONSTANTS, FUNCTIONS, OTHER_NAMES, WRITTEN_OUT
+from canon.expression.text.vocabulary import CONSTANTS, FUNCTIONS, LEGENDRES, OTHER_NAMES, WRITTEN_OUT
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -109,8 +109,10 @@ class Scope:
             return self
         return replace(self, names={**self.names, name: Symbol(name, real=True, positive=positive)})
 
-    def near(self, name: str) -> str:
-        """Return a remedy for an unknown name."""
+    def near(self, name: str, behind: str = "") -> str:
+        """Return a remedy for an unknown name, before what stands behind it."""
+        if name in LEGENDRES and behind.lstrip().startswith(("(", "[", r"\left")):
+            return f"if Legendre's integral is meant, write {LEGENDRES[name]} of the parameter m = k²"
         if name in OTHER_NAMES:
             return f"write {OTHER_NAMES[name]}"
         if name in WRITTEN_OUT:

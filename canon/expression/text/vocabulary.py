@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from sympy import Expr
 
-__all__ = ["CONSTANTS", "FUNCTIONS", "MAX_CHOICES", "OTHER_NAMES", "RELATIONS", "WRITTEN_OUT"]
+__all__ = ["CONSTANTS", "FUNCTIONS", "LEGENDRES", "MAX_CHOICES", "OTHER_NAMES", "RELATIONS", "WRITTEN_OUT"]
 
 MAX_CHOICES = 16
 """Most arguments of Max and Min and most pieces of Piecewise: SymPy compares them pairwise."""
@@ -93,3 +93,7 @@ WRITTEN_OUT = {
     **dict.fromkeys(("Limit", "limit"), "write its value"),
 }
 """What is no function of the language, and what to write instead."""
+LEGENDRES = MappingProxyType(
+    {"K": "elliptic_k(m)", "E": "elliptic_e(m)", "F": "elliptic_f(phi, m)", "Pi": "elliptic_pi(n, m)"}
+)
+"""Letters of Legendre's integrals. Books take the modulus k in K(k), some the parameter m = k²: it has to be said."""
