@@ -228,7 +228,8 @@ class Trajectory:
         """Relative error of the energy, (H − H₀)/abs(H₀), or H − H₀ where H₀ = H(start) is zero; shape (times,).
 
         Where forces or what depends on time do work, the defect of the energy balance, E(t) − E(0) − W(t) with
-        W = ∫ power dt, takes the place of H − H₀. An H₀ that is nothing beside the terms of H counts as zero.
+        W = ∫ power dt, takes the place of H − H₀. An H₀ that is nothing beside the terms of H counts as zero. What a
+        user's own events change the energy by is in it, and is no error.
 
         Raises
         ------

@@ -6,8 +6,21 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon import RK4, Gauss, Hamiltonian, Splitting, Taylor, coordinates, drift, propagate, time
+from canon import (
+    RK4,
+    Event,
+    Gauss,
+    Hamiltonian,
+    Lagrangian,
+    Splitting,
+    Taylor,
+    coordinates,
+    drift,
+    propagate,
+    time,
+)
 from canon.flow.method.method import DOP853
+from canon.mechanics import UnilateralLagrangian
 from canon.study.energy_drift.drift import Growth
 from canon.study.energy_drift.error_series import error_series
 
@@ -144,3 +157,28 @@ def test_what_is_no_error_is_refused():
         drift(few)
     with pytest.raises(ValueError, match=r"drift\(motion\) takes a motion"):
         drift(np.linspace(0.0, 1.0, 500))
+
+
+@pytest.mark.parametrize("as_lagrangian", [False, True])
+def test_energy_that_a_ball_loses_at_its_bounces_is_no_error_of_a_method(as_lagrangian):
+    x = coordinates("x")
+    v = x.dot if as_lagrangian else x.momentum
+    falling = Lagrangian(v**2 / 2 - x, [x]) if as_lagrangian else Hamiltonian(v**2 / 2 + x, [x], [v])
+    for kept, verdict in ((1, Growth.ROUND_OFF), (sp.Rational(99, 100), None)):
+        bounce = Event(x, -1, {v: -kept * v})
+        motion = propagate(falling, (0, 60), [1.0, 0.0], events=[bounce], samples=1000)
+        if verdict is not None:
+            assert drift(motion).verdict in (verdict, Growth.BOUNDED)
+            continue
+        with pytest.raises(
+            ValueError, match=r"x = 0 has changed the energy from 1 to 0\.9801 at t = 1\.41421"
+        ):
+            drift(motion)
+
+
+def test_what_impacts_take_is_work_and_refraction_is_none():
+    y = coordinates("y")
+    ball = UnilateralLagrangian(Lagrangian(y.dot**2 / 2 - y, [y]), [y], restitution=[sp.Rational(9, 10)])
+    assert drift(propagate(ball, (0, 20), [1.0, 0.0], samples=512)).bound < 1e-12
+    step = Hamiltonian(y.momentum**2 / 2 + y**2 / 2 + sp.Heaviside(y) / 10, [y], [y.momentum])
+    assert drift(propagate(step, (0, 50), [1.0, 0.3], samples=512)).bound < 1e-12

@@ -148,7 +148,7 @@ def drift(
     ------
     ValueError
         Where the series is too short, not in order of time, or holds NaN or infinity: a failed run is
-        never data. Where H of a motion depends on t, so that its change is no error.
+        never data. Where H of a motion depends on t or events have changed it, so that its change is no error.
 
     Examples
     --------

@@ -14,12 +14,16 @@ from canon.study.motion.observables import ENERGY, Observable
 
 if TYPE_CHECKING:
     from canon.array import Array
+    from canon.flow.task import Task
     from canon.flow.trajectory import Trajectory
 
 __all__ = ["ErrorSeries", "error_series", "series_of_parts"]
 
 FAR_ABOVE = 1e3
 """A tolerance so many times above the unit of rounding makes truncation the larger error of a step."""
+
+BY_AN_EVENT = 1e-6
+"""A change of the energy by more than this part of it is no rounding of an event's place."""
 
 LOOKED_AT = 64
 """States of a motion at which the size of H's terms is looked at."""
@@ -101,8 +105,8 @@ def error_series(
     Raises
     ------
     ValueError
-        H depends on t, so that its change is no error; there is no such observable; or the motion has many orbits and
-        none is chosen.
+        H depends on t or events have changed it, so that its change is no error; there is no such observable; or the
+        motion has many orbits and none is chosen.
 
     Examples
     --------
@@ -153,6 +157,7 @@ def _followed(motion: Trajectory, observable: str) -> tuple[Array, Array]:
                 "H depends on t, so its change is no error; drift_study(system, …) follows the energy less the work "
                 "done from outside, or name an observable that should stay constant"
             )
+        _check_events(motion)
         return motion.energy_defect, motion.energy[0]
     if observable not in motion.changes:
         known = ", ".join((ENERGY, *motion.changes))
@@ -160,6 +165,38 @@ def _followed(motion: Trajectory, observable: str) -> tuple[Array, Array]:
             f"the motion has not followed {observable!r}, only {known}: propagate(…, observables={{{observable!r}: …}})"
         )
     return motion.changes[observable], motion.observables[observable][0]
+
+
+def _check_events(motion: Trajectory) -> None:
+    """Refuse a motion whose energy was changed by its events, as by a ball that loses some of it at each bounce.
+
+    Raises
+    ------
+    ValueError
+        Where one has changed it.
+    """
+    record = motion.record
+    if record.moving is not None and record.moving.contacts is not None:
+        return  # what impacts take is part of the work
+    task, samples = record.task, record.samples
+    for orbit, one in enumerate(samples.each or (samples,)):
+        for met in one.crossings:
+            if met.after is None or not any(met.event is given for given in task.events):
+                continue
+            before, after = (_energy_at(task, orbit, met.t, y) for y in (met.y, met.after))
+            if abs(after - before) > BY_AN_EVENT * max(abs(before), abs(after)):
+                raise ValueError(
+                    f"{met.event} has changed the energy from {before:.6g} to {after:.6g} at t = {met.t:.6g}, so that "
+                    "its change is no error: judge a motion up to there, or an observable that is kept"
+                )
+
+
+def _energy_at(task: Task, orbit: int, t: float, y: Array) -> float:
+    """Return H, or the energy less the work up to the start, of a state (q, p) of an orbit."""
+    state = task.states[0][:, orbit].copy()
+    state[task.system.rows] = y
+    point = dict(zip(task.system.inputs, (*state, t), strict=True))
+    return float(task.system.graph.evaluate([task.system.hamiltonian], point, FLOAT64)[0])
 
 
 def _sizes_of_terms(motion: Trajectory, orbit: int) -> Array:
