@@ -7,6 +7,8 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from canon import (
     Hamiltonian,
@@ -493,3 +495,32 @@ def test_studies_take_rotating_bodies(tmp_path):
     assert run_study(study, tmp_path / "bodies.sqlite").failed == 0
     coarse, fine = (result.numbers["bound"] for result in results_of(tmp_path / "bodies.sqlite"))
     assert 2.0**3 < coarse / fine < 2.0**5
+
+
+numbers = st.floats(-2, 2).map(lambda z: round(z, 3))
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::canon.AccuracyWarning")
+@settings(max_examples=15, deadline=None)
+@given(
+    inertia=st.lists(st.floats(0.2, 5).map(lambda z: round(z, 2)), min_size=3, max_size=3),
+    weights=st.lists(numbers, min_size=3, max_size=3),
+    momentum=st.lists(numbers, min_size=3, max_size=3),
+    axis=st.tuples(numbers, numbers, numbers),
+    step=st.floats(0.01, 2),
+)
+def test_laws_of_any_top(inertia, weights, momentum, axis, step):
+    """Casimirs to round-off after a hundred steps, however large, and the way back to the start after five."""
+    V = sum(w * g for w, g in zip(weights, Gamma, strict=True)) + weights[0] * Gamma[1] ** 2
+    size = np.linalg.norm([*axis, 1e-3])
+    vertical = [float(x) for x in (*axis[:2], axis[2] + 1e-3) / size]
+    start, method = [*momentum, *vertical], LiePoissonSplitting(2)
+    top = heavy_top(inertia, V)
+    motion = propagate(top, (0, 100 * step), start, method=method, step=step * (1 + 1e-12), samples=10)
+    largest = abs(motion.y[:3]).max() + 1
+    assert worst_change(top, motion) < 100 * U * largest
+    there = propagate(top, (0, 5 * step), start, method=method, step=step * (1 + 1e-12), samples=1)
+    assert abs(reversal_error(top, (0, 5 * step), start, method=method, step=step * (1 + 1e-12))).max() < (
+        1e-11 * (1 + abs(there.y).max()) ** 4
+    )

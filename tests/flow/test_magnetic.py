@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from canon import Hamiltonian, choose, coordinates, flow_jacobian, load_motion, parameters, propagate
 from canon.expression.symbols.symbol import time
@@ -267,6 +269,31 @@ def test_precisions_differ_by_their_rounding(system, method):
 def test_a_chaotic_orbit_has_the_same_exponent_by_the_splitting():
     found = lyapunov_spectrum(PLANE, (0, 2000), PLANE_START, method=MagneticSplitting(4), step=0.05)
     assert abs(found.exponents.sum()) < 1e-6
+
+
+factors = st.integers(-3, 3)
+
+
+@pytest.mark.slow
+@settings(max_examples=15, deadline=None)
+@given(
+    first=st.lists(factors, min_size=5, max_size=5),
+    second=st.lists(factors, min_size=5, max_size=5),
+    masses=st.tuples(st.integers(1, 3), st.integers(1, 3)),
+    start=st.lists(st.floats(-1, 1).map(lambda z: round(z, 2)), min_size=4, max_size=4),
+)
+def test_laws_of_any_polynomial_field(first, second, masses, start):
+    """Symplectic or with phase volume kept, and back at the start, whatever the field."""
+    terms = (x, y, x * y, x**2 * y, y**3)
+    A = [sum(c * term for c, term in zip(row, terms, strict=True)) / 5 for row in (first, second)]
+    H = charge(A, (x**2 + y**2) / 2 + x**3 / 9, masses, (x, y))
+    one = flow_jacobian(H, (0, 0.25), start, method=MagneticSplitting(2), step=0.125)
+    size = 1 + abs(one.final).max() ** 2
+    assert one.symplecticity_defect[-1] < 1e-14 * size
+    push = flow_jacobian(H, (0, 0.25), start, method=Boris(2), step=0.125)
+    assert np.linalg.det(push.final) == pytest.approx(1, abs=1e-13 * size)
+    for method in (MagneticSplitting(2), Boris(2)):
+        assert abs(reversal_error(H, (0, 0.25), start, method=method, step=0.125)).max() < 1e-13 * size
 
 
 # trouble -----------------------------------------------------------------------------------------------
