@@ -318,6 +318,17 @@ SECTIONS = {
         (Table(("program", "ns a step", "× C"), r"^  (\S.*?) {2,}([\d.]+) ns a step(?: +([\d.]+) × C)?$"),),
         told=r"canon, double +\S+ ns a step +([\d.]+) × C",
     ),
+    "rotations": Section(
+        "Times in parts of heyoka's: below one the method is cheaper. Between mirrors the place is asked for, "
+        "elsewhere the energy. The last lines of the output have round-off: norms of attitudes after many steps, in "
+        "units of 2⁻⁵³.",
+        (
+            Table(
+                ("system", "method", "to 1e-04", "to 1e-08"),
+                r"^(\S.*?) {2,}(\S+) +([\d.]+|–) +([\d.]+|–)$",
+            ),
+        ),
+    ),
     "chaos": Section(
         "With one deviation an orbit costs one to two and a half times as much as alone; the last table counts "
         "verdicts on orbits that are known.",

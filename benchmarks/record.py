@@ -33,6 +33,7 @@ BENCHMARKS = {
     "sections": "Poincaré sections of ensembles",
     "kernels": "Compiled loops, beside a C program",
     "constraints": "Constraints kept by RATTLE, beside a C program",
+    "rotations": "Rotating bodies and charges, by methods of their own",
     "brouwer": "Energy error over 10⁸ steps: Brouwer's law",
     "headline": "A million years of planets, ten million periods of Kepler's ellipse",
     "peers": "Work at a wanted accuracy, beside other libraries",

@@ -18,6 +18,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from canon.kernel.llvm.cayley_turn import turn_factor, write_turn
+from canon.kernel.llvm.circular_functions import sine_and_cosine
 from canon.kernel.llvm.formulas import LaneFormulas
 from canon.kernel.llvm.loop import METHOD, Loop, blocks_of, compile_loop, increase, steps_of
 from canon.kernel.llvm.number_types import DOUBLE, MachineType
@@ -127,7 +128,7 @@ class _Flows:
                 known[speed] = double, f.mul(f.sub(cosine, sine), f.add(cosine, sine))
             else:
                 own = angle if speed == 1 else w.algebra("mul", angle, w.constant(speed))
-                known[speed] = w.operation("sin", [own]), w.operation("cos", [own])
+                known[speed] = sine_and_cosine(w, own)
         shears = {speed: self._shears(*both) for speed, both in known.items()}
         for i, j, c in turn.planes:
             first, second, sign = shears[abs(c)]
@@ -155,7 +156,7 @@ class _Flows:
         M = [f.mul(w.load(self.y, i), w.constant(block.speed)) for i in block.axis]
         speed = f.sqrt(f.dot(M, M))
         half = f.mul(f.mul(time, speed), w.constant(_HALF))
-        sine, cosine = w.operation("sin", [half]), w.operation("cos", [half])
+        sine, cosine = sine_and_cosine(w, half)
         # Where the half angle is beyond a right one, it less half a turn: both halves make a whole turn less.
         sine = f.select(f.less(cosine, f.zero), f.neg(sine), sine)
         tangent = f.div(sine, f.add(f.one, f.abs(cosine)))

@@ -126,7 +126,7 @@ def candidate_methods(question: Question) -> tuple[Method, ...]:
     splittings of two copies of the phase space, with Boris's push and magnetic splittings where H = (p − A)²/2m + φ;
     Wisdom & Holman's and its kin where H is a disturbed motion known in closed form; Taylor's, and two ordinary ones
     for comparison. Where there are no canonical variables, the last three alone, with RATTLE for holonomic
-    constraints and Lie–Poisson splittings for rotating bodies.
+    constraints, Lie–Poisson splittings and Gauss's methods for Poisson systems.
     """
     if not is_hamiltonian(question.hamiltonian):
         return Taylor(), *_of_constraints(question), *_of_rotations(question), DOP853(), RK4()
@@ -162,13 +162,17 @@ def _of_constraints(question: Question) -> tuple[Method, ...]:
 
 
 def _of_rotations(question: Question) -> tuple[Method, ...]:
-    """Return splittings on Poisson manifolds, where the parts of H have flows that are known."""
+    """Return splittings on Poisson manifolds, where the parts of H have flows that are known, and Gauss's methods.
+
+    Those are no Poisson maps, but keep Casimir functions that are quadratic.
+    """
     system: Any = question.hamiltonian
     if not isinstance(system, PoissonSystem):
         return ()
+    implicit = Gauss(4), Gauss(6), Gauss(2)
     if not _applies(question, LiePoissonSplitting(), NoLiePoissonPartsError):
-        return ()
-    return tuple(LiePoissonSplitting(order) for order in (4, 6, 2, 8))
+        return implicit
+    return *(LiePoissonSplitting(order) for order in (4, 6, 2, 8)), *implicit
 
 
 def _applies(question: Question, method: Method, refusal: type[ValueError]) -> bool:
