@@ -309,3 +309,19 @@ def test_an_angle_is_taken_back_by_whole_turns(method, how, way):
     rotor = System(theta.momentum**2 / 2, (theta,), (theta.momentum,))
     teeth = propagate(rotor, (0, way * 9.5), [0, 1], method=method, events=[saw], **how)
     assert times(teeth) == pytest.approx(way * np.arange(1, 10), abs=1e-13)
+
+
+@pytest.mark.parametrize(("method", "how"), [*EVERY, (DOP853(), {})], ids=[*IDS, "dop853"])
+@pytest.mark.parametrize("way", [1, -1])
+def test_a_jump_and_a_pole_are_no_zeros(method, how, way):
+    """tan θ changes its sign at its poles too, and atan2 at π, where DOP853 told of the next zero twice."""
+    rotor = System(theta.momentum**2 / 2, (theta,), (theta.momentum,))
+    turned = sp.atan2(sp.sin(theta), sp.cos(theta))
+    for function, zeros in ((turned, [2 * np.pi]), (sp.tan(theta), [np.pi, 2 * np.pi])):
+        run = {"method": method, "events": [Event(function)], "samples": 50, **how}
+        if method == Taylor() and function != turned:
+            with pytest.raises(NonFiniteStateError, match="or of that of an event"):
+                propagate(rotor, (0, way * 7), [0.1 * way, 1], **run)
+            continue
+        met = times(propagate(rotor, (0, way * 7), [0.1 * way, 1], **run))
+        assert met == pytest.approx([way * (zero - 0.1) for zero in zeros], abs=1e-12)

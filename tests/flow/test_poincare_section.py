@@ -190,3 +190,14 @@ def test_a_momentum_whose_square_vanishes_at_a_place_has_one_value_there_or_none
     np.testing.assert_allclose(
         starts_of_energy(square, 1.0, grid, p, inside_only=True), [[0.5], [np.sqrt(2)]]
     )
+
+
+def test_poles_of_a_surface_are_no_passings():
+    x, y = coordinates("x y")
+    rotors = Hamiltonian((x.momentum**2 + y.momentum**2) / 2, [x, y], [x.momentum, y.momentum])
+    starts = np.array([[0.1, 0.2], [0, 0], [1, 2], [0, 0]])
+    found = poincare_section(
+        rotors, (0, 7), starts, sp.tan(x), direction=0, method=Splitting("verlet"), step=0.1
+    )
+    np.testing.assert_allclose(found.t[found.orbit == 0], np.pi * np.arange(1, 3) - 0.1, atol=1e-13)
+    np.testing.assert_allclose(found.t[found.orbit == 1], (np.pi * np.arange(1, 5) - 0.2) / 2, atol=1e-13)

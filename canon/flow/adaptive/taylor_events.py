@@ -151,7 +151,11 @@ class TaylorEvents:
             begin, end = sorted((t[before], t[after]))
             there = [met for met in self.crossings if begin - near <= met.t <= end + near]
             told = any(met.event is event.event or met.after is not None for met in there)
-            if event.event.counts(bool(rising[at + 1])) and not told:
+            if (
+                event.event.counts(bool(rising[at + 1]))
+                and not told
+                and self._leads_over(event, t, y, before, after)
+            ):
                 state = y[self.system.rows, before]
                 raise NonFiniteStateError(
                     f"{event.event} was passed unseen between {time_and_state(float(t[before]), state)} and t = "
@@ -160,6 +164,17 @@ class TaylorEvents:
                     float(t[before]),
                     state,
                 )
+
+    def _leads_over(self, event: PreparedEvent, t: Array, y: Array, before: int, after: int) -> bool:
+        """Tell whether a function moves from its sign at one sample to that at another, and does not jump there.
+
+        As tan θ at its pole and atan2 at π do.
+        """
+        chosen = [before, after]
+        point = dict(zip(self.system.inputs, (*y[:, chosen], t[chosen]), strict=True))
+        value, rate = self.system.graph.evaluate([event.value, event.rate], point)
+        way = self.forward * np.broadcast_to(rate, 2) * np.sign(np.broadcast_to(value, 2)[1])
+        return bool((way > 0).any())
 
     def crossed(
         self, handled: Sequence[PreparedEvent], t: Any, part: float, before: Any, after: Any

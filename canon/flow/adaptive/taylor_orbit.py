@@ -263,7 +263,7 @@ class TaylorOrbit:
         y = (state * self.taylor_events.size).astype(np.float64)[list(rows)]
         return NonFiniteStateError(
             f"the motion can't be continued after {time_and_state(float(t), y)} ({outcome}): a collision or the edge "
-            "of H's domain; stop earlier",
+            f"of H's domain{' or of that of an event' if self.taylor_events.events else ''}; stop earlier",
             float(t),
             y,
         )

@@ -156,6 +156,7 @@ class WatchedOrbit:
                 before,
                 float(integrator.t),
                 self._sides,
+                len(watch.kinks),
             )
         for zero in zeros:
             event = self._event(zero)

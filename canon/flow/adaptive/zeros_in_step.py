@@ -13,7 +13,10 @@ if TYPE_CHECKING:
 
     from canon.array import Array
 
-__all__ = ["Zero", "zeros_in_step"]
+__all__ = ["JUMP", "Zero", "zeros_in_step"]
+
+JUMP = 0.25
+"""A function that is larger, in parts of its size beside it, where it changes its sign, jumps there or has a pole."""
 
 _PLACES = 9
 """At so many places of a step, its end included, functions are looked at, and at the extrema between them."""
@@ -34,7 +37,7 @@ class Zero(NamedTuple):
 
 
 def zeros_in_step(
-    values: Callable[[float], Array], start: float, end: float, sides: Array
+    values: Callable[[float], Array], start: float, end: float, sides: Array, jumping: int = 0
 ) -> tuple[list[Zero], Array]:
     """Return the zeros after a step's start, in the order in which they are passed, and the signs at its end.
 
@@ -46,6 +49,8 @@ def zeros_in_step(
         The step.
     sides
         Of which sign each function is just after the start, 0 where that is not known.
+    jumping
+        The first so many functions count where they jump too; of others poles and jumps are no zeros.
     """
     times = np.linspace(start, end, _PLACES + 1)[1:].tolist()
     table = np.array([values(t) for t in times])
@@ -58,7 +63,9 @@ def zeros_in_step(
         before = start
         for t, x in _with_extrema(value, list(zip(times, column, strict=True))):
             if x and after[which] and x * after[which] < 0:
-                zeros.append(Zero(_root(value, before, t, x), which, x > 0))
+                zero = _root(value, before, t, x)
+                if which < jumping or abs(value(zero)) <= JUMP * max(abs(x), abs(value(before))):
+                    zeros.append(Zero(zero, which, x > 0))
             after[which] = math.copysign(1.0, x) if x else after[which]
             before = t
     return sorted(zeros, key=lambda zero: abs(zero.t - start)), after

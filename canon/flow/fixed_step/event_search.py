@@ -36,6 +36,9 @@ _AT_ONCE = Fraction(1, 2**30)
 _AWAY = 2.0**-10
 """In parts of its way in a step: a function that a change of the state has taken farther from zero is on that side."""
 
+_JUMP = 0.25
+"""A function that is larger, in parts of its size beside it, where it changes its sign, jumps there or has a pole."""
+
 _TRIES = 200
 
 
@@ -60,8 +63,8 @@ _kept_watch = functools.lru_cache(maxsize=64)(event_function)
 class _RestOfStep:
     """What is left of step n + 1: the state at its beginning and at its end, were it not for the events.
 
-    Of each event ``latest`` has the place of its latest crossing, or the beginning, with dg/dt there; ``at_end`` has g
-    and dg/dt at the end.
+    Of each event ``latest`` has the place of its latest crossing, or the beginning, with dg/dt there; ``at_begin`` has
+    g at the beginning, ``at_end`` g and dg/dt at the end.
     """
 
     n: int
@@ -69,6 +72,7 @@ class _RestOfStep:
     base: LoopState
     end: LoopState
     latest: list[tuple[Fraction, float]]
+    at_begin: list[float]
     at_end: list[tuple[float, float]]
 
 
@@ -150,8 +154,10 @@ class EventLocator:
             here, t = self.steps.moved(rest.base, n, rest.begin, place), self.steps.time(n, place)
             rising, event = self.sides[i] < 0, self.events[i]
             self.sides[i] = -self.sides[i]
-            rest.latest[i] = (place, self.values_and_rates(here, t)[i][1])
-            if not event.event.counts(rising):
+            value, rate = self.values_and_rates(here, t)[i]
+            rest.latest[i] = (place, rate)
+            jumps = abs(value) > _JUMP * max(abs(rest.at_begin[i]), abs(rest.at_end[i][0]))
+            if jumps or not event.event.counts(rising):
                 continue
             if event.jump is not None:
                 if changed.get(i, Fraction(-1)) > place - _AT_ONCE:
@@ -172,9 +178,10 @@ class EventLocator:
 
     def _rest_of_step(self, n: int, begin: Fraction, base: LoopState, end: LoopState) -> _RestOfStep:
         self.segments.append((begin, base))
-        latest = [(begin, rate) for _, rate in self.values_and_rates(base, self.steps.time(n, begin))]
+        at_begin = self.values_and_rates(base, self.steps.time(n, begin))
+        latest = [(begin, rate) for _, rate in at_begin]
         at_end = self.values_and_rates(end, self.steps.time(n, Fraction(1)))
-        return _RestOfStep(n, begin, base, end, latest, at_end)
+        return _RestOfStep(n, begin, base, end, latest, [g for g, _ in at_begin], at_end)
 
     def _earliest(self, rest: _RestOfStep) -> tuple[Fraction, int]:
         """Return the place of the next crossing in a step and whose it is; the place 2 where there is none."""

@@ -37,6 +37,9 @@ _STEPS = 1 << 16
 
 _MANY = 2**62
 
+_JUMP = 0.25
+"""As in :mod:`canon.flow.fixed_step.event_search`."""
+
 _kept_search = functools.lru_cache(maxsize=64)(crossing_search_function)
 _kept_places = functools.lru_cache(maxsize=64)(crossing_places_function)
 
@@ -281,7 +284,10 @@ class _Search:
         )  # fmt: skip
         high, rest = own.states()
         t = (times + memory[1] * _as_number(loop, h)).astype(np.float64)
-        return _Found(orbits[lane[:count]], lane[:count], t[:count], high[:, :count], rest[:, :count], 0, 0)
+        values = dict(zip(self.system.inputs, (*(high + rest), t), strict=True))
+        there = np.broadcast_to(np.abs(self.system.graph.evaluate([self.surface[0]], values)[0]), t.shape)
+        kept = np.flatnonzero((there <= _JUMP * np.abs(g).max(axis=1))[:count])  # neither jumps nor poles
+        return _Found(orbits[lane[kept]], lane[kept], t[kept], high[:, kept], rest[:, kept], 0, 0)
 
     def _affine(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
         """Return the coefficients of a step of no size, and what they gain up to a whole step."""

@@ -27,8 +27,8 @@ Action = Literal["record", "stop", "bounce"]
 class Event:
     """Event of a motion: what is to happen where a function g(q, p, t) crosses zero.
 
-    A crossing is a change of sign. A motion that touches g = 0 and turns back on the same side crosses nothing,
-    nor does one that starts at g = 0 cross at its start.
+    A crossing is a change of sign through zero, not by a jump or over a pole, as tan θ has. A motion that touches g = 0
+    and turns back on the same side crosses nothing, nor does one that starts at g = 0 cross at its start.
 
     With :class:`canon.Taylor` the zero is that of the step's own Taylor polynomial. With a method of
     fixed steps an event is noticed where g has another sign after a step than before it, or where g
