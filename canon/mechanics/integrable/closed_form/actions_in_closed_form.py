@@ -329,7 +329,7 @@ def _linear(p: Expr, q: Symbol) -> tuple[Expr, str] | None:
     """Return the mean over a turn of A + B cos q, or of N/(A + B cos q), where H is linear in p."""
     name, waves = "rotation linear in p", ({sp.cos(q)}, {sp.sin(q)})
     above, below = sp.fraction(sp.together(p))
-    terms = _terms(below if below.has(q) else p, q)
+    terms = terms_in(below if below.has(q) else p, q)
     A = terms.pop(sp.S.One, sp.S.Zero)
     if set(terms) not in waves or (below.has(q) and above.has(q)):
         return None
