@@ -133,3 +133,15 @@ def test_hidden_poles(exact, claim, expected):
 def test_conditions_on_what_is_small(exact, claim, domain, expected):
     keys = {"exact": [exact], "claim": [claim], "small": ["e"], "parameters": declared("e:positive a:real")}
     assert said("first-order", **keys, domain=domain) == expected
+
+
+def test_a_derivative_at_a_place_is_told_as_one_of_the_function():
+    """Runge's method with h in place of h/2: f′(y) of both sides is one thing, SymPy's Subs is not shown."""
+    exact = ["y + h*f(y) + h**2/2*Derivative(f(y), y)*f(y)"]
+    keys = {"parameters": {"y": "real", "h": "real"}, "functions": {"f": ["y"]}, "small": ["h"], "order": 2}
+    verdict = judge(Claim("a", "first-order", {**keys, "exact": exact, "claim": ["y + h*f(y + h*f(y))"]}))
+    assert verdict.fails
+    assert "exact less claimed is -h**2*f(y)*Derivative(f(y), y)/2 there" in verdict.feedback
+    assert judge(
+        Claim("a", "first-order", {**keys, "exact": exact, "claim": ["y + h*f(y + h/2*f(y))"]})
+    ).holds

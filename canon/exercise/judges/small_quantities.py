@@ -25,6 +25,7 @@ from canon.exercise.question.question import (
     more_than_zero,
 )
 from canon.exercise.question.series_expansion import check_analytic, coefficient, without_kinks
+from canon.exercise.sheet.sympy_trees import shown
 from canon.expression.symbols.symbol import acceleration, velocity
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.constraint_manifold import transported
@@ -195,9 +196,9 @@ def _same_to_order(
         found = coefficient(above, epsilon, k)
         verdict = vanishes_off_kinks(found, domain, budget=deadline.left)
         if verdict.fails:
-            shown = shown_short(found / lowest * _power_of(small, k - start))
+            left = shown_short(found / lowest * _power_of(small, k - start))
             return Verdict(
-                Status.FAILS, "", verdict.certificate, shown, verdict.counterexample, verdict.assumed
+                Status.FAILS, "", verdict.certificate, left, verdict.counterexample, verdict.assumed
             ), k - start
         verdicts.append(verdict)
     return all_hold(verdicts), order
@@ -271,7 +272,9 @@ def _expanded(f: Expr, small: Sequence[Symbol], order: int, domain: Domain) -> E
 
 def _where_wrong(at: int, residual: object, names: str) -> str:
     known = f"right to {_ordinal(at - 1)} order in {names} only; " if at - 1 >= 0 else ""
-    return f"{known}the terms of {_ordinal(at)} order are wrong: exact less claimed is {residual} there"
+    return (
+        f"{known}the terms of {_ordinal(at)} order are wrong: exact less claimed is {shown(residual)} there"
+    )
 
 
 def _ordinal(order: int) -> str:

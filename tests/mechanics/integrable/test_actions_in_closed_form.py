@@ -139,6 +139,23 @@ def test_sommerfelds_ellipse_turns():
     assert vanishes(radial.J - formula.subs(L**2 - k**2, L**2), inside).fails
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(("along", "axis"), [(2, 1), (2, -1)])
+def test_a_top_without_weight_has_its_angular_momentum_less_the_larger_component(along, axis):
+    """J_θ = |L| − max(|p_φ|, |p_ψ|), L² = 2AE + (1 − A/C)p_ψ² (Landau & Lifshitz, § 35), here A = 1, C = 2."""
+    psi, p_psi = sp.symbols("psi p_psi", real=True)
+    T = (p_theta**2 + (p_phi - p_psi * sp.cos(theta)) ** 2 / sp.sin(theta) ** 2 + p_psi**2 / 2) / 2
+    H = Hamiltonian(T, [theta, phi, psi], [p_theta, p_phi, p_psi])
+    start = {theta: 1, phi: 0, psi: 0, p_theta: half, p_phi: along, p_psi: axis}
+    torus = action_variables(hamilton_jacobi(H), start, digits=20)
+    found = closed_actions(torus)[0]
+    assert found.name == "free symmetric top"
+    L_squared = sp.Rational(1, 4) + (along - axis * sp.cos(1)) ** 2 / sp.sin(1) ** 2 + axis**2
+    value = found.J.subs(torus.values).n(25)
+    assert abs(value - (sp.sqrt(L_squared) - max(abs(along), abs(axis))).n(25)) < 1e-18
+    assert abs(value - (sp.sqrt(L_squared) - min(abs(along), abs(axis))).n(25)) > 0.1
+
+
 def test_a_rate_that_vanishes_is_no_rotation():
     integral = hamilton_jacobi(Hamiltonian(p * (1 + 2 * sp.cos(q)), q, p))
     with pytest.raises(NoCycleError, match="rotation of q"):

@@ -293,6 +293,7 @@ def _quartic_well(A: Expr, terms: Mapping[Expr, Expr], q: Symbol, cycle: Cycle) 
 def _on_the_sphere(square: Expr, q: Symbol) -> tuple[Expr, str] | None:
     """Return the loop integral of √P(z)/(1 − z²), z = cos q, with a cubic P: spherical pendulum and Lagrange's top.
 
+    Of a quadratic P, as that of a top without weight, it is the sum of the residues at z = ±1 and infinity.
     P/(1 − z²) is linear in z but for P(1)/2 over 1 − z and P(−1)/2 over 1 + z, and z = z₁ + (z₂ − z₁) sn²
     (E. T. Whittaker, Analytical Dynamics, section 71).
     """
@@ -301,6 +302,9 @@ def _on_the_sphere(square: Expr, q: Symbol) -> tuple[Expr, str] | None:
     if whole.has(q) or not whole.is_polynomial(z):
         return None
     cubic = sp.Poly(whole, z)
+    if cubic.degree() == 2:
+        poles = (sqrt(-cubic.eval(1)) + sqrt(-cubic.eval(-1))) / 2
+        return sqrt(-cubic.LC()) - poles, "free symmetric top"
     if cubic.degree() != 3:
         return None
     P = sp.Poly(whole.subs(z, -z), z) if cubic.LC().is_negative else cubic
