@@ -146,6 +146,56 @@ def test_charges_drift_with_e_cross_b_whatever_the_step():
     assert abs(propagate(wrong, (0, 100), [0, 0, 0, "-0.1"], method=Boris(), step=0.1)["x"]).max() > 0.05
 
 
+def relativistic(A, phi, c, q=Q):
+    """H of a unit charge of unit mass where light has the speed c."""
+    p = [s.momentum for s in q]
+    root = sp.sqrt(c**2 + sum((a - b) ** 2 for a, b in zip(p, A, strict=True)))
+    return Hamiltonian(c * root + phi, list(q), p)
+
+
+def test_a_relativistic_charge_circles_more_slowly():
+    """p = 2 m c across B = 3: the rate is B/γ, γ = √5, of which a step turns 2 atan(h B/2γ)."""
+    H, h, n = relativistic([-3 * y / 2, 3 * x / 2], 0, 1, (x, y)), 0.125, 400
+    motion = propagate(H, (0, n * h), [0, 0, 2, 0], method=Boris(), step=h, samples=n)
+    kinetic = motion["p_x"] + 3 * motion["y"] / 2, motion["p_y"] - 3 * motion["x"] / 2
+    angle = 2 * np.arctan(3 * h / 2 / np.sqrt(5)) * np.arange(n + 1)
+    np.testing.assert_allclose(kinetic, [2 * np.cos(angle), -2 * np.sin(angle)], atol=4e-13)
+    with pytest.raises(ValueError, match="this is a relativistic charge's; use Boris"):
+        propagate(H, (0, 1), [0, 0, 2, 0], method=MagneticSplitting(), step=h)
+    with pytest.raises(
+        ValueError, match="the derivative of Boris's step of a relativistic charge is not known"
+    ):
+        flow_jacobian(H, (0, 1), [0, 0, 2, 0], method=Boris(), step=h)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("order", [2, 4, 6])
+def test_order_and_volume_of_a_relativistic_charge(order):
+    fast = relativistic(CURVED_A, BOWL, 2)
+    driven = relativistic(
+        [-y * (2 + sp.sin(time)) / 2, x * (2 + sp.sin(time)) / 2], x * sp.cos(time), 1, (x, y)
+    )
+    assert ratio(fast, CURVED_START, Boris(order), 60) == pytest.approx(order, abs=0.08 * order)
+    assert ratio(driven, [1, 0, 0.1, 0.5], Boris(order), 60) == pytest.approx(order, abs=0.08 * order)
+    assert abs(reversal_error(fast, (0, 10), CURVED_START, method=Boris(order), step=0.1)).max() < 1e-14
+    weights, delta = {1: 45, 2: -9, 3: 1}, 2.0**-9
+
+    def end(i, k):
+        start = np.array(CURVED_START) + k * delta * np.eye(6)[i]
+        return propagate(fast, (0, 0.5), start, method=Boris(order), step=0.25, samples=1).final
+
+    columns = [sum(w * (end(i, k) - end(i, -k)) for k, w in weights.items()) / (60 * delta) for i in range(6)]
+    assert np.linalg.det(columns) == pytest.approx(1, abs=1e-10)
+
+
+@pytest.mark.slow
+def test_slow_charges_are_not_relativistic():
+    slow, start = relativistic(CURVED_A, BOWL, 10**6), CURVED_START
+    one = propagate(slow, (0, 3), start, method=Boris(4), step=0.01, samples=1).final
+    two = propagate(CURVED, (0, 3), start, method=Boris(4), step=0.01, samples=1).final
+    np.testing.assert_allclose(one, two, atol=1e-8)
+
+
 def test_the_gauge_of_a_does_not_matter_to_boris():
     chi = x**2 * y + sp.sin(x * z)
     other = charge([a + chi.diff(s) for a, s in zip(CURVED_A, Q, strict=True)], BOWL)
@@ -298,7 +348,7 @@ def test_laws_of_any_polynomial_field(first, second, masses, start):
 
 # trouble -----------------------------------------------------------------------------------------------
 
-MASSIVE = Hamiltonian(sp.sqrt(1 + P[0] ** 2) + x**2, [x], [P[0]])
+MASSIVE = Hamiltonian(sp.sqrt(1 + P[0] ** 2) + P[0] ** 2 + x**2, [x], [P[0]])
 COUPLED = Hamiltonian((P[0] + P[1]) ** 2 / 2 + P[0] ** 2 / 2 + x * y, [x, y], P[:2])
 VARYING = Hamiltonian(P[0] ** 2 * x**2 / 2, [x], [P[0]])
 

@@ -30,6 +30,11 @@ def gauge_shifts(system: HamiltonEquations) -> GaugeShifts:
         H is not of that form or holds the time, or an integral is not known in closed form.
     """
     form, graph = magnetic_form(system), system.graph
+    if form.relativistic is not None:
+        raise NotMagneticError(
+            "MagneticSplitting is for H = Σ (p − A)²/2m + φ, and this is a relativistic charge's; use Boris(), "
+            "Gauss(6) or Taylor()"
+        )
     if not system.autonomous:
         raise NotMagneticError(
             "H holds the time: MagneticSplitting is for H(q, p); use Boris(), Gauss(6) or Taylor()"

@@ -28,9 +28,10 @@ class Boris:
     Notes
     -----
     For H = Σ (p − A(q, t))²/2m + φ(q, t), the charge being part of A and φ, which is found in H whatever its gauge; A
-    and φ may be any functions. Steps keep volume, and in a uniform B without E the speed; not the form dq ∧ dp. Energy
-    errors mostly stay small for long and may wander where fields are strongly curved (E. Hairer, Ch. Lubich, BIT 58
-    (2018) 969–979, doi:10.1007/s10543-018-0713-1). Bodies in a rotating frame have this form too, A = m Ω × r.
+    and φ may be any functions; and for c √(m²c² + (p − A)²) + φ of a relativistic charge. Steps keep volume, and in a
+    magnetic field without E the kinetic energy; not the form dq ∧ dp. Energy errors mostly stay small for long and may
+    wander where fields are strongly curved (E. Hairer, Ch. Lubich, BIT 58 (2018) 969–979,
+    doi:10.1007/s10543-018-0713-1). Bodies in a rotating frame have the first form too, A = m Ω × r.
 
     Examples
     --------

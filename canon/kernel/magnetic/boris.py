@@ -135,18 +135,29 @@ class _Push:
         self._drift(half)
         zero = self.system.graph.zero
         pairs = [(i, j) for i in range(self.n) for j in range(self.n) if form.field[i][j] != zero]
-        found = self._evaluated([*form.inverse_masses, *form.force, *(form.field[i][j] for i, j in pairs)])
-        masses, force, entries = found[: self.n], found[self.n : 2 * self.n], found[2 * self.n :]
-        K = {(i, j): f.mul(f.mul(half, B), masses[j]) for (i, j), B in zip(pairs, entries, strict=True)}
+        found = self._evaluated([*form.force, *(form.field[i][j] for i, j in pairs)])
+        force, entries = found[: self.n], found[self.n :]
         self._kick(half, force)
+        masses = self._inverse_masses()
+        K = {(i, j): f.mul(f.mul(half, B), masses[j]) for (i, j), B in zip(pairs, entries, strict=True)}
         for block in form.blocks(zero):
             self._turn(block, K)
         self._kick(half, force)
         self._drift(half)
 
+    def _inverse_masses(self) -> list[str]:
+        """Write w of each coordinate."""
+        f, given = LaneFormulas(self.w), self.form.relativistic
+        if given is None:
+            return self._evaluated(self.form.inverse_masses)
+        factor, rest, slope = self._evaluated([given.factor, given.rest, given.slope])
+        kinetic = [self.w.load(self.kinetic, i) for i in range(self.n)]
+        root = f.sqrt(f.fma(slope, f.dot(kinetic, kinetic), rest))
+        return [f.div(factor, root)] * self.n
+
     def _drift(self, half: str) -> None:
         w = self.w
-        for i, mass in enumerate(self._evaluated(self.form.inverse_masses)):
+        for i, mass in enumerate(self._inverse_masses()):
             increase(w, self.y, self.e, str(i), half, w.algebra("mul", mass, w.load(self.kinetic, i)))
         w.store(w.algebra("add", w.load(self.clock, 0), half), self.clock, 0)
 

@@ -9,10 +9,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from canon.kernel.magnetic.relativistic_form import relativistic_form
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from canon.expression.graph.graph import Graph
+    from canon.kernel.magnetic.relativistic_form import RelativisticForm
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = ["MagneticForm", "NotMagneticError", "magnetic_form"]
@@ -29,19 +32,22 @@ class MagneticForm:
     Parameters
     ----------
     inverse_masses
-        wᵢ, free of q, p and t.
+        wᵢ, free of q, p and t; of a relativistic charge what is above the root in w.
     vector_potential
         Aᵢ(q, t), the charge being part of it.
     force
         Eᵢ(q, t).
     field
         Bᵢⱼ(q, t), row by row: antisymmetric but where deviations move along.
+    relativistic
+        The parts of H where it is not this sum but that of a relativistic charge.
     """
 
     inverse_masses: tuple[int, ...]
     vector_potential: tuple[int, ...]
     force: tuple[int, ...]
     field: tuple[tuple[int, ...], ...]
+    relativistic: RelativisticForm | None = None
 
     def blocks(self, zero: int) -> tuple[tuple[int, ...], ...]:
         """Return the sets of coordinates that B mixes, those of one coordinate included."""
@@ -66,6 +72,13 @@ def magnetic_form(system: HamiltonEquations) -> MagneticForm:
     """
     graph, n = system.graph, len(system.q) - system.varying
     q, p, velocity = system.q[:n], system.p[:n], system.velocity[:n]
+    relativistic = relativistic_form(system)
+    if relativistic is not None and system.variations:
+        raise NotMagneticError(
+            "the derivative of Boris's step of a relativistic charge is not known here: use Taylor() or Gauss(6)"
+        )
+    if relativistic is not None:
+        return _of_relativistic(system, relativistic, n)
     inverse_masses = [_inverse_mass(system, i, n) for i in range(n)]
     at_rest = graph.substitute(velocity, {graph.symbol(s): graph.zero for s in p})
     A = [graph.negative(a) for a in _quotients(graph, at_rest, inverse_masses)]
@@ -81,6 +94,20 @@ def magnetic_form(system: HamiltonEquations) -> MagneticForm:
         tuple(graph.add((turning[i][j], graph.negative(slopes[i][j]))) for j in range(n)) for i in range(n)
     )
     return MagneticForm(tuple(inverse_masses), tuple(A), tuple(force), field)
+
+
+def _of_relativistic(system: HamiltonEquations, given: RelativisticForm, n: int) -> MagneticForm:
+    graph, q, A = system.graph, system.q[:n], given.vector_potential
+    pulls = graph.gradient(given.potential, q)
+    force = [
+        graph.negative(graph.add((pull, graph.derivative(a, system.t))))
+        for pull, a in zip(pulls, A, strict=True)
+    ]
+    slopes = [graph.gradient(a, q) for a in A]
+    field = tuple(
+        tuple(graph.add((slopes[j][i], graph.negative(slopes[i][j]))) for j in range(n)) for i in range(n)
+    )
+    return MagneticForm((given.factor,) * n, A, tuple(force), field, given)
 
 
 def _quotients(graph: Graph, above: Sequence[int], below: Sequence[int]) -> list[int]:
