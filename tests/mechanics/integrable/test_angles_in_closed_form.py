@@ -25,6 +25,8 @@ ONE = {
     "Morse mirrored": (p**2 / 2 + (1 - sp.exp(2 * q)) ** 2, {q: 0, p: HALF}),
     "Pöschl–Teller": (p**2 / 2 - 3 / sp.cosh(2 * q) ** 2, {q: 0, p: 1}),
     "trigonometric well": (p**2 / 2 + 3 / sp.cos(q) ** 2, {q: 0, p: 1}),
+    "trigonometric well by a tangent": (p**2 / 2 + 2 * sp.tan(q) ** 2, {q: QUARTER, p: 1}),
+    "Pöschl–Teller by a tangent": (p**2 / 2 + sp.tanh(q) ** 2, {q: QUARTER, p: 1}),
     "hard spring": (p**2 / 2 + q**2 / 2 + q**4, {q: 0, p: 1}),
     "over both wells": (p**2 / 2 - q**2 / 2 + q**4, {q: 0, p: 1}),
     "one of two wells": (p**2 / 2 - q**2 / 2 + q**4 / 4, {q: 1, p: QUARTER}),

@@ -152,7 +152,7 @@ def recognised(momentum: SeparatedMomentum, cycle: Cycle) -> tuple[Expr, str] | 
         return _linear(momentum.shift, q)
     if momentum.shift != 0:
         return None
-    terms = terms_in(_in_reciprocals(about_its_kink(square, q)), q)
+    terms = terms_in(in_reciprocals(about_its_kink(square, q)), q)
     A = terms.pop(sp.S.One, sp.S.Zero)
     if cycle.kind is CycleKind.ROTATION:
         return _pendulum(A, terms, q, cycle)
@@ -172,7 +172,7 @@ def about_its_kink(f: Expr, q: Symbol) -> Expr:
     return substitute(f, {q: q + sp.expand(q - u / u.diff(q))}) if u.diff(q) in (1, -1) else f
 
 
-def _in_reciprocals(f: Expr) -> Expr:
+def in_reciprocals(f: Expr) -> Expr:
     """Return f with tan² as 1/cos² − 1, cot² and tanh² likewise, and with sec, csc, sech as reciprocals."""
     known = {g**2: sp.cos(g.args[0]) ** -2 - 1 for g in f.atoms(sp.tan)}
     known |= {g**2: sp.sin(g.args[0]) ** -2 - 1 for g in f.atoms(sp.cot)}

@@ -19,6 +19,7 @@ from canon.mechanics.integrable.actions import ActionVariables, angles
 from canon.mechanics.integrable.closed_form.actions_in_closed_form import (
     GUARD_BITS,
     TORI,
+    in_reciprocals,
     neighbouring_tori,
     real_ball,
     recognised,
@@ -133,7 +134,7 @@ def _derivatives(
     found = recognised(momentum, cycle)
     if found is None or momentum.square is None:
         return None
-    coefficients = terms_in(momentum.square, q)
+    coefficients = terms_in(in_reciprocals(momentum.square), q)
     others = {f: c for f, c in coefficients.items() if f != 1}
     A = coefficients.get(sp.S.One, sp.S.Zero)
     integrals = integrals_by_terms(found[1], A, others, q, cycle)
