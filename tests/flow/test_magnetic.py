@@ -40,7 +40,7 @@ every = pytest.mark.parametrize("method", METHODS, ids=str)
 
 def ratio(system, start, method, steps, span=3):
     """log₂ of the errors with steps and with steps of half the size."""
-    true = propagate(system, (0, span), start, samples=1).final
+    true = propagate(system, (0, span), start, method=RK4(), step=span / 30_000, samples=1).final
     errors = [
         abs(propagate(system, (0, span), start, method=method, step=span / n, samples=1).final - true).max()
         for n in (steps, 2 * steps)
@@ -86,7 +86,7 @@ def test_time_reversal(method):
     ids=["plane", "curved", "unequal"],
 )
 def test_the_splitting_is_symplectic_and_boris_keeps_volume_alone(system, start):
-    for order in (2, 4):
+    for order in (2,) if system is PLANE else (2, 4):
         exact = flow_jacobian(system, (0, 1), start, method=MagneticSplitting(order), step=0.125)
         assert exact.symplecticity_defect[-1] < 4e-15
         push = flow_jacobian(system, (0, 1), start, method=Boris(order), step=0.125)
@@ -196,6 +196,7 @@ def test_slow_charges_are_not_relativistic():
     np.testing.assert_allclose(one, two, atol=1e-8)
 
 
+@pytest.mark.slow
 def test_the_gauge_of_a_does_not_matter_to_boris():
     chi = x**2 * y + sp.sin(x * z)
     other = charge([a + chi.diff(s) for a, s in zip(CURVED_A, Q, strict=True)], BOWL)
