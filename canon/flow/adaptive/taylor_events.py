@@ -159,8 +159,8 @@ class TaylorEvents:
                 state = y[self.system.rows, before]
                 raise NonFiniteStateError(
                     f"{event.event} was passed unseen between {time_and_state(float(t[before]), state)} and t = "
-                    f"{t[after]:.9g}: its function vanishes there with its rate. Give one that has a rate there, such "
-                    "as x in place of x**3, or take DOP853() or a method of fixed steps",
+                    f"{t[after]:.9g}: its function has a kink near its zero, or vanishes with its rate. Give one that "
+                    "has a rate there, such as x in place of x**3, or take DOP853() or a method of fixed steps",
                     float(t[before]),
                     state,
                 )
