@@ -269,3 +269,40 @@ def test_what_has_no_known_integral_is_left_open():
     assert closed_actions(action_variables(sextic, {q: 0, p: 1}, digits=20)) == (None,)
     shifted = hamilton_jacobi(Hamiltonian(p**2 / 2 + sp.exp(-3 * q) - 2 * sp.exp(-q), q, p))
     assert closed_actions(action_variables(shifted, {q: 0, p: half}, digits=20))[0] is None
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("start", "masses"),
+    [
+        (
+            (1, sp.Rational(1, 2), sp.Rational(1, 5), sp.Rational(1, 3)),
+            (1, sp.Rational(1, 10), sp.Rational(1, 2)),
+        ),
+        ((sp.Rational(1, 10), sp.Rational(1, 5), sp.Rational(1, 10), sp.Rational(1, 5)), (3, 1, 1)),
+    ],
+    ids=["about both centres", "about one of them"],
+)
+def test_two_centres_have_all_three_complete_integrals(start, masses):
+    x, y, px, py = sp.symbols("x y p_x p_y", real=True)
+    one, two, c = sp.symbols("k1 k2 c", positive=True)
+    near, far = sp.sqrt((x - c) ** 2 + y**2), sp.sqrt((x + c) ** 2 + y**2)
+    centres = Hamiltonian((px**2 + py**2) / 2 - one / near - two / far, [x, y], [px, py])
+    found = hamilton_jacobi(centres, "elliptic", focal=c)
+    torus = action_variables(found, start, dict(zip((one, two, c), masses, strict=True)))
+    for action in closed_actions(torus):
+        assert action.name == "elliptic coordinates"
+        assert action.J.has(sp.elliptic_k)
+        assert action.J.has(sp.elliptic_e)
+        assert action.J.has(sp.elliptic_pi)
+        assert action.tori == 3
+
+
+@pytest.mark.parametrize(("energy", "kind"), [(-0.3, "libration"), (0.9, "rotation")])
+def test_a_pendulum_with_a_second_harmonic_has_them_too(energy, kind):
+    V = -sp.cos(q) - sp.cos(q) ** 2 / 4
+    speed = sp.sqrt(2 * (sp.Rational(energy).limit_denominator(10) - V.subs(q, 0)))
+    torus = action_variables(hamilton_jacobi(Hamiltonian(p**2 / 2 + V, q, p)), {q: 0, p: speed})
+    assert torus.cycles[0].kind.value == kind
+    (action,) = closed_actions(torus)
+    assert (action.name, action.tori) == ("elliptic coordinates", 3)

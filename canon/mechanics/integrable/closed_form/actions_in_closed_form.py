@@ -1,9 +1,9 @@
 """Actions in closed form: integrals that are known, recognised term by term and certified against quadrature.
 
 The loop integrals of roots of A + B f(q) + C g(q) that are sums of residues (A. Sommerfeld, Atombau und Spektrallinien,
-supplement 6; M. Born, Vorlesungen über Atommechanik, appendix), and complete elliptic integrals of the pendulum and of
-quartic wells (P. F. Byrd, M. D. Friedman, Handbook of Elliptic Integrals, 213, 218, 219). None is returned on
-recognition alone: see :func:`closed_actions`.
+supplement 6; M. Born, Vorlesungen über Atommechanik, appendix), and complete elliptic integrals of the pendulum, of
+quartic wells and of two centres (P. F. Byrd, M. D. Friedman, Handbook of Elliptic Integrals, 213, 218, 219). None is
+returned on recognition alone: see :func:`closed_actions`.
 """
 
 from __future__ import annotations
@@ -18,9 +18,10 @@ from sympy import Expr, Rational, Symbol, sqrt
 from canon.expression.symbols.user_input import given_kind
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.integrable.actions import ActionVariables, action_variables
+from canon.mechanics.integrable.closed_form.elliptic_coordinates import action_in_elliptic_coordinates
 from canon.mechanics.integrable.cycles import CycleKind, ball_of
 from canon.mechanics.integrable.turning_points import NoCycleError
-from canon.proof.domain.balls import precision
+from canon.proof.domain.balls import precision, value
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -86,7 +87,9 @@ def closed_actions(
     [sqrt(2)*k*sqrt(m)/(2*sqrt(-E)) - Abs(alpha_phi), alpha_phi]
     """
     given_kind(torus, ActionVariables, "what closed_actions() takes", "action_variables() returns it")
-    known = [recognised(m, c) for m, c in zip(torus.integral.momenta, torus.cycles, strict=True)]
+    known = [
+        recognised(m, c, torus.values) for m, c in zip(torus.integral.momenta, torus.cycles, strict=True)
+    ]
     if most_operations is not None:
         known = [f if f is None or sp.count_ops(f[0]) <= most_operations else None for f in known]
     if not any(found is not None for found in known):
@@ -138,11 +141,17 @@ def _agrees(J: Expr, i: int, torus: ActionVariables) -> bool:
 
 
 def real_ball(f: Expr, values: Mapping[Symbol, Expr]) -> arb:
-    ball = ball_of(substitute(f, values))
+    """Return a ball that holds f at exact values, or one without a number where f is not certainly real.
+
+    Symbols have balls for their values: put into f, SymPy would ask of every sum with them whether it is zero.
+    """
+    ball = value(f, {}, {s: ball_of(number) for s, number in values.items()})
     return ball.real if ball.imag.contains(0) else arb("nan")
 
 
-def recognised(momentum: SeparatedMomentum, cycle: Cycle) -> tuple[Expr, str] | None:
+def recognised(
+    momentum: SeparatedMomentum, cycle: Cycle, values: Mapping[Symbol, Expr]
+) -> tuple[Expr, str] | None:
     """Return a known integral whose terms are those of p², and its name."""
     q, square = momentum.q, momentum.square
     if cycle.kind is CycleKind.IGNORABLE:
@@ -154,6 +163,9 @@ def recognised(momentum: SeparatedMomentum, cycle: Cycle) -> tuple[Expr, str] | 
         return None
     terms = terms_in(in_reciprocals(about_its_kink(square, q)), q)
     A = terms.pop(sp.S.One, sp.S.Zero)
+    elliptic = action_in_elliptic_coordinates(A, terms, q, cycle, values)
+    if elliptic is not None:
+        return elliptic, "elliptic coordinates"
     if cycle.kind is CycleKind.ROTATION:
         return _pendulum(A, terms, q, cycle)
     for known in (_powers, _trigonometric, _exponentials, _isochrone):

@@ -131,7 +131,7 @@ def _derivatives(
     if cycle.kind is CycleKind.IGNORABLE:
         period = cast("Expr", cycle.period)
         return [Incomplete(q, period).times(momentum.shift.diff(c)) for c in constants]
-    found = recognised(momentum, cycle)
+    found = recognised(momentum, cycle, torus.values)
     if found is None or momentum.square is None:
         return None
     coefficients = terms_in(in_reciprocals(momentum.square), q)
