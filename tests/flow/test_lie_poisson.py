@@ -459,6 +459,13 @@ def test_other_systems_and_orders_are_refused():
         propagate(FREE, (0, 1), START, method="verlet", step=0.1)
     with pytest.raises(ValueError, match="inertia has 2 entries for 3 principal axes"):
         free_body([1, 2])
+    with pytest.raises(
+        ValueError, match=r"inertia = \['1', '1', '0'\]: principal moments of inertia are positive"
+    ):
+        heavy_top([1, 1, 0], Gamma[2])
+    C = parameters("C")
+    with pytest.raises(ZeroDivisionError, match="the expression divides by zero"):
+        propagate(free_body([1, 2, C]), (0, 1), START, method="lie-poisson", step=0.1, parameters={C: 0})
     with pytest.raises(ValueError, match=r"a matrix of 2 × 2 brackets for 3 variables"):
         PoissonSystem(M[0], M, sp.eye(2))
     with pytest.raises(ValueError, match="derivative"):

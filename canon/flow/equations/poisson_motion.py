@@ -42,7 +42,8 @@ def poisson_motion(system: PoissonSystem) -> FirstOrderMotion:
     H = graph.from_sympy(without_pieces(system.H))
     slopes, brackets = graph.gradient(H, system.x), brackets_on(graph, system)
     rates = tuple(row_product(graph, row, slopes) for row in brackets)
-    power = graph.derivative(H, system.t)
+    changes = graph.derivative(H, system.t)
+    power = None if changes == graph.zero else changes
     return FirstOrderMotion(
         "Poisson system", graph, system.x, (), "x", system.t, rates, energy=H, power=power
     )

@@ -77,6 +77,11 @@ def free_body(inertia: Sequence[Expr]) -> PoissonSystem:
     inertia
         The principal moments of inertia A, B, C.
 
+    Raises
+    ------
+    ValueError
+        There are not three of them, or one is not positive.
+
     Examples
     --------
     >>> from canon import parameters
@@ -153,13 +158,12 @@ def rotating_body(inertia: Sequence[Expr], V: Expr = sp.S.Zero) -> PoissonSystem
 
 
 def _kinetic(inertia: Sequence[Expr]) -> Expr:
-    moments = all_of(inertia, 3, "inertia", "principal axes")
-    return sp.Add(
-        *(
-            M**2 / (2 * given_expression(I, "a moment of inertia"))
-            for M, I in zip(ANGULAR_MOMENTUM, moments, strict=True)
-        )
-    )
+    moments = [
+        given_expression(I, "a moment of inertia") for I in all_of(inertia, 3, "inertia", "principal axes")
+    ]
+    if any(I.is_positive is False for I in moments):
+        raise ValueError(f"inertia = {[str(I) for I in moments]}: principal moments of inertia are positive")
+    return sp.Add(*(M**2 / (2 * I) for M, I in zip(ANGULAR_MOMENTUM, moments, strict=True)))
 
 
 def _turning(u: Sequence[Expr]) -> sp.Matrix:
