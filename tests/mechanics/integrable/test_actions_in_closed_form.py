@@ -198,7 +198,9 @@ def test_squares_of_tangents_are_those_of_reciprocals(potential, formula):
     assert vanishes(found.J - 2 * formula, inside).fails
 
 
-@pytest.mark.parametrize(("name", "factor"), [("oscillator", 1 + sp.Rational(1, 10**15)), ("Kepler", -1)])
+@pytest.mark.parametrize(
+    ("name", "factor"), [("oscillator", 1 + sp.Rational(1, 10**15)), ("oscillator", sp.I), ("Kepler", -1)]
+)
 def test_a_wrong_formula_is_not_returned(monkeypatch, name, factor):
     H, start, _, _ = CASES[name]
     right = module._powers

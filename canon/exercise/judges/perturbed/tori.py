@@ -8,6 +8,7 @@ such as the librations and rotations of a pendulum, it must be narrowed.
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations, islice
@@ -28,7 +29,7 @@ from canon.mechanics.algebra.substitution import exchanged, substitute
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.integrable.actions import ActionVariables, action_variables
 from canon.mechanics.integrable.ball_function import NotHolomorphicError
-from canon.mechanics.integrable.closed_form.actions_in_closed_form import closed_actions
+from canon.mechanics.integrable.closed_form.actions_in_closed_form import closed_actions, lies_in
 from canon.mechanics.integrable.complete_integral import CompleteIntegral, hamilton_jacobi
 from canon.mechanics.integrable.cycles import ball_of
 from canon.mechanics.integrable.separated_momenta import NotSeparatedError
@@ -124,7 +125,7 @@ def action_angle(reading: Reading) -> Iterator[Question]:
     claimed, at_energy, tori = (
         reading.expressions("J", like="q"),
         _at_energy(reading, H),
-        _tori(H, reading.domain),
+        _tori(H, reading),
     )
     if not tori.in_closed_form:
         numbers = [substitute(J, at_energy) for J in claimed]
@@ -188,7 +189,7 @@ def _map_to_actions(reading: Reading, H: Hamiltonian) -> Iterator[Question]:
         reading.fault("transformation", "the variables on the left can't occur in the expressions")
     domain = transported(reading.domain, seen) if seen else reading.domain
     yield Same(canonical_parts(images[:n], images[n:], q, p), domain)
-    tori = _tori(H, reading.domain)
+    tori = _tori(H, reading)
     right = [substitute(tori.of_state(J), seen) for J in tori.known()]
     A = _integer_matrix(right, momenta, (*q, *p), domain)
     rows = (sp.Add(*(k * P for k, P in zip(A.row(i), momenta, strict=True))) for i in range(n))
@@ -228,7 +229,7 @@ def frequency(reading: Reading) -> Iterator[Question]:
     if names and len(names) != len(H.q):
         reading.fault("actions", "should name one action for each coordinate, or be left out")
     claimed, through = reading.expressions("omega", like="q"), _at_energy(reading, H)
-    tori = _tori(H, reading.domain)
+    tori = _tori(H, reading)
     if not names and not tori.in_closed_form:
         numbers = [substitute(f, through) for f in claimed]
         refuted = _refuted(numbers, [torus.frequencies for torus in tori.tori], tori.tori, "the frequency of")
@@ -258,7 +259,7 @@ def slow_invariant(reading: Reading, I: Expr, tau: Symbol, H0: Expr) -> Iterator
         raise Undecided(
             "to lowest order invariants of one degree of freedom are judged; for more, claim I with order = 1"
         )
-    tori = _tori(Hamiltonian(H0, q, p, reading.time), reading.domain)
+    tori = _tori(Hamiltonian(H0, q, p, reading.time), reading)
     J = tori.of_state(tori.known()[0])
     variables = (*q, *p, tau)
     parts = tuple(
@@ -286,9 +287,11 @@ def _at_energy(reading: Reading, H: Hamiltonian) -> dict[Symbol, Expr]:
     return {} if E is None or E in (*H.q, *H.p) or H.H.has(E) else {E: H.H}
 
 
-def _tori(H: Hamiltonian, domain: Domain) -> _Tori:
+def _tori(H: Hamiltonian, reading: Reading) -> _Tori:
     """Return the tori of a system; those of the last few are kept, as each repair of an answer asks for them anew."""
-    return _kept_tori(H.H, H.q, H.p, H.t, domain.conditions, tuple(domain.box.items()))
+    domain = reading.domain
+    box = tuple(domain.box.items())
+    return _kept_tori(H.H, H.q, H.p, H.t, domain.conditions, box, reading.claim.budget)
 
 
 @lru_cache(maxsize=KEPT)
@@ -299,14 +302,17 @@ def _kept_tori(
     t: Symbol,
     conditions: tuple[Boolean, ...],
     box: tuple[tuple[Symbol, tuple[sp.Rational, sp.Rational]], ...],
+    budget: float,
 ) -> _Tori:
     """Return tori through points of the domain, and the actions that are one formula on all of them.
 
     Raises
     ------
     Undecided
-        Where H does not separate, no bounded motions were found, or the formula is another one in parts of the domain.
+        Where H does not separate, no bounded motions were found in the time of the claim, or the formula is another one
+        in parts of the domain.
     """
+    ends = time.monotonic() + budget
     frozen = _frozen(energy, (*q, *p))
     still = Hamiltonian(exchanged(energy, frozen), q, p, t)
     there = Domain(tuple(cast("Boolean", c.xreplace(frozen)) for c in conditions), FrozenMapping(dict(box)))
@@ -316,10 +322,15 @@ def _kept_tori(
         raise Undecided(f"actions are known where the Hamilton–Jacobi equation separates; {reason}") from None
     try:
         # A box is a hint only: what holds there must hold on the rest of the domain too.
-        compared = list(islice(_bounded(integral, Domain(there.conditions)), COMPARED))
-        found = list(islice(_bounded(integral, there), TORI)) if there.box else compared[:TORI]
+        compared = list(islice(_bounded(integral, Domain(there.conditions), ends), COMPARED))
+        found = list(islice(_bounded(integral, there, ends), TORI)) if there.box else compared[:TORI]
     except NotHolomorphicError as reason:
         raise Undecided(f"no quadrature of this H is certified: {reason}") from None
+    if len(found) < TORI and time.monotonic() > ends:
+        raise Undecided(
+            f"actions of {counted(len(found), 'motion')} were found in {budget:g} s; give a larger budget, or narrow "
+            "the domain"
+        )
     if len(found) < TORI:
         raise Undecided(
             f"bounded motions were found through {len(found)} of {POINTS} points of the domain only; narrow it"
@@ -350,11 +361,13 @@ def _frozen(H: Expr, state: Sequence[Symbol]) -> dict[Expr, Expr]:
     return {f: Symbol(f"{f.func}_{i}", real=True, positive=f.is_positive) for i, f in enumerate(functions)}
 
 
-def _bounded(integral: CompleteIntegral, domain: Domain) -> Iterator[ActionVariables]:
-    """Yield tori through points of a domain, where there are bounded motions."""
+def _bounded(integral: CompleteIntegral, domain: Domain, ends: float) -> Iterator[ActionVariables]:
+    """Yield tori through points of a domain, where there are bounded motions, until the time ends."""
     H = integral.H
     symbols = {s for s in H.H.free_symbols if isinstance(s, Symbol)} | {*H.q, *H.p}
     for point in domain.points(symbols, POINTS):
+        if time.monotonic() > ends:
+            return
         start = {z: point[z] for z in (*H.q, *H.p)}
         parameters = {s: point[s] for s in symbols - set(start)}
         try:
@@ -365,7 +378,7 @@ def _bounded(integral: CompleteIntegral, domain: Domain) -> Iterator[ActionVaria
 
 def _lies_in(J: Expr, torus: ActionVariables, i: int) -> bool:
     with precision(BITS):
-        return ball_of(substitute(J, dict(torus.values))).real.overlaps(torus.J[i])
+        return lies_in(J, torus.values, torus.J[i])
 
 
 def _refuted(

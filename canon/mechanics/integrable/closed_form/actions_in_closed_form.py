@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
-from flint import arb
 from sympy import Expr, Rational, Symbol, sqrt
 
 from canon.expression.symbols.user_input import given_kind
@@ -25,6 +24,8 @@ from canon.proof.domain.balls import precision, value
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    from flint import arb
 
     from canon.mechanics.integrable.cycles import Cycle
     from canon.mechanics.integrable.separated_momenta import SeparatedMomentum
@@ -137,16 +138,16 @@ def _agrees(J: Expr, i: int, torus: ActionVariables) -> bool:
     due = [(J, torus.J[i])]
     due += [(J.diff(c), torus.slopes[i][j]) for j, c in enumerate(torus.integral.constants)]
     with precision(int(torus.digits * 3.33) + GUARD_BITS):
-        return all(real_ball(f, torus.values).overlaps(ball) for f, ball in due)
+        return all(lies_in(f, torus.values, ball) for f, ball in due)
 
 
-def real_ball(f: Expr, values: Mapping[Symbol, Expr]) -> arb:
-    """Return a ball that holds f at exact values, or one without a number where f is not certainly real.
+def lies_in(f: Expr, values: Mapping[Symbol, Expr], ball: arb) -> bool:
+    """Tell whether f at exact values is a real number that may be the one in a ball.
 
     Symbols have balls for their values: put into f, SymPy would ask of every sum with them whether it is zero.
     """
-    ball = value(f, {}, {s: ball_of(number) for s, number in values.items()})
-    return ball.real if ball.imag.contains(0) else arb("nan")
+    found = value(f, {}, {s: ball_of(number) for s, number in values.items()})
+    return found.is_finite() and found.imag.contains(0) and found.real.overlaps(ball)
 
 
 def recognised(

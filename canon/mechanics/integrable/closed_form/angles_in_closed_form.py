@@ -20,8 +20,8 @@ from canon.mechanics.integrable.closed_form.actions_in_closed_form import (
     GUARD_BITS,
     TORI,
     in_reciprocals,
+    lies_in,
     neighbouring_tori,
-    real_ball,
     recognised,
     terms_in,
 )
@@ -191,7 +191,7 @@ def _agreeing(
             at = {**torus.values, **{s: state[s] for s in torus.integral.H.q}}
             with precision(int(torus.digits * 3.33) + GUARD_BITS):
                 agree = [
-                    known and real_ball(theta, at).overlaps(ball)
+                    known and lies_in(theta, at, ball)
                     for known, theta, ball in zip(agree, formulas, certified, strict=True)
                 ]
     return agree
