@@ -326,15 +326,7 @@ def _kept_tori(
         found = list(islice(_bounded(integral, there, ends), TORI)) if there.box else compared[:TORI]
     except NotHolomorphicError as reason:
         raise Undecided(f"no quadrature of this H is certified: {reason}") from None
-    if len(found) < TORI and time.monotonic() > ends:
-        raise Undecided(
-            f"actions of {counted(len(found), 'motion')} were found in {budget:g} s; give a larger budget, or narrow "
-            "the domain"
-        )
-    if len(found) < TORI:
-        raise Undecided(
-            f"bounded motions were found through {len(found)} of {POINTS} points of the domain only; narrow it"
-        )
+    _check_enough(len(found), time.monotonic() > ends, budget)
     if len({tuple(cycle.kind for cycle in torus.cycles) for torus in (*found, *compared)}) > 1:
         raise Undecided(
             "the domain has motions of several kinds, librations and rotations; narrow it to those that are meant"
@@ -349,6 +341,18 @@ def _kept_tori(
         raise Undecided("the actions are other functions in parts of the domain; narrow it")
     back = {symbol: f for f, symbol in frozen.items()}
     return _Tori(integral, tuple(found), tuple(J if J is None else exchanged(J, back) for J in known), back)
+
+
+def _check_enough(found: int, late: bool, budget: float) -> None:
+    if found < TORI and late:
+        raise Undecided(
+            f"actions of {counted(found, 'motion')} were found in {budget:g} s; give a larger budget, or narrow "
+            "the domain"
+        )
+    if found < TORI:
+        raise Undecided(
+            f"bounded motions were found through {found} of {POINTS} points of the domain only; narrow it"
+        )
 
 
 def _frozen(H: Expr, state: Sequence[Symbol]) -> dict[Expr, Expr]:
