@@ -1,12 +1,20 @@
 """Claims of Hamilton–Jacobi theory and perturbation theory: what is told, and generators that would remove the mean."""
 
 from dataclasses import replace
+from itertools import islice
+from types import SimpleNamespace
 
 import pytest
+from sympy import symbols
 
 from canon.exercise.claim_verdict import examine
+from canon.exercise.judges.perturbed import tori
 from canon.exercise.sheet.sheet import Claim, read_sheet
 from canon.exercise.sheet_check import judged
+from canon.mechanics.hamilton.hamiltonian import Hamiltonian
+from canon.mechanics.integrable.complete_integral import hamilton_jacobi
+from canon.proof.domain.domain import EVERYWHERE
+from canon.proof.domain.verdict import Undecided
 from tests.exercise.test_diagnosis import ROOT
 
 CLAIMS = {
@@ -230,3 +238,14 @@ def test_answers_as_people_type_them(kind, keys, right, wrong):
 def test_a_remainder_is_passed_over_and_told():
     (told,) = judged([Claim("a", "first-order", {**SINE, "claim": "x - x³/6 + O(x^5)"})])
     assert told.warnings == ("the remainder O(x^5) in claim is passed over",)
+
+
+def test_actions_that_the_time_is_too_short_for_are_no_ground_for_a_verdict(monkeypatch):
+    """A formula that is another one elsewhere may pass on fewer tori, so that none pass on those found until then."""
+    q, p = symbols("q p", real=True)
+    integral = hamilton_jacobi(Hamiltonian(p**2 / 2 + q**2, q, p))
+    assert len(list(islice(tori._bounded(integral, EVERYWHERE, float("inf")), 2))) == 2
+    clock = iter([0.0, 2.0])
+    monkeypatch.setattr(tori, "time", SimpleNamespace(monotonic=lambda: next(clock)))
+    with pytest.raises(Undecided, match="were not found in the budget"):
+        list(tori._bounded(integral, EVERYWHERE, 1.0))

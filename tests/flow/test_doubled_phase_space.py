@@ -11,12 +11,11 @@ from canon import Hamiltonian, coordinates, flow_jacobian, parameters, propagate
 from canon.flow import reversal_error
 from canon.flow.fixed_step.compiled_loop import compiled_loop, steps_between
 from canon.flow.fixed_step.partial_step import LoopState
+from canon.flow.method.composition import COMPOSITIONS, weights_of_order
 from canon.flow.method.method import Splitting
 from canon.flow.method.nonseparable_splitting import (
-    COMPOSITIONS,
     ExtendedPhaseSpace,
     SemiexplicitSplitting,
-    weights_of_order,
 )
 from canon.flow.method.number_formats import fixed_precision
 from canon.flow.run.non_finite_state import NonFiniteStateError

@@ -18,13 +18,14 @@ from canon import (
     propagate,
     work_precision,
 )
+from canon.flow.method.composition import COMPOSITIONS
 from canon.flow.method.constrained_method import Rattle
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS, HEYOKA, SCIPY
 from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
 from canon.flow.method.magnetic_methods import Boris, MagneticSplitting
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor, TimeTransformed
 from canon.flow.method.method_text import method_from, method_named, method_of
-from canon.flow.method.nonseparable_splitting import COMPOSITIONS, ExtendedPhaseSpace, SemiexplicitSplitting
+from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
 from canon.flow.method.solvable_splitting import SABA, SBAB, SolvableSplitting, WisdomHolman
 from canon.kernel.schemes.perturbed_schemes import saba
 from canon.kernel.schemes.splitting_schemes import SCHEMES

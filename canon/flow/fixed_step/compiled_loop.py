@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from canon.flow.fixed_step.gauge_integrals import gauge_shifts
 from canon.flow.fixed_step.partial_step import PartialSteps
-from canon.flow.method.nonseparable_splitting import weights_of_order
+from canon.flow.method.composition import weights_of_order
 from canon.kernel.llvm.loop import Loop, runge_kutta_loop
 from canon.kernel.llvm.machine_code import simd_bytes
 from canon.kernel.loops.doubled_phase_space import (

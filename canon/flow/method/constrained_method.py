@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from canon.flow.method.composition import check_order
 from canon.flow.method.engine import FIXED_STEPS
-from canon.flow.method.nonseparable_splitting import COMPOSITIONS
 
 __all__ = ["Rattle"]
 
@@ -53,10 +53,7 @@ class Rattle:
     )
 
     def __post_init__(self) -> None:
-        if self.order not in COMPOSITIONS:
-            raise ValueError(
-                f"Rattle({self.order!r}): the order is one of {', '.join(map(str, COMPOSITIONS))}"
-            )
+        check_order(self.order, "Rattle")
 
     def __str__(self) -> str:
         return f"rattle-{self.order}"

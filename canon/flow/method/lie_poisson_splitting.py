@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from canon.flow.method.composition import check_order, weights_of_order
 from canon.flow.method.engine import FIXED_STEPS
-from canon.flow.method.nonseparable_splitting import COMPOSITIONS, weights_of_order
 
 __all__ = ["LiePoissonSplitting"]
 
@@ -54,10 +54,7 @@ class LiePoissonSplitting:
     )
 
     def __post_init__(self) -> None:
-        if self.order not in COMPOSITIONS:
-            raise ValueError(
-                f"LiePoissonSplitting({self.order!r}): the order is one of {', '.join(map(str, COMPOSITIONS))}"
-            )
+        check_order(self.order, "LiePoissonSplitting")
 
     def __str__(self) -> str:
         return f"lie-poisson-{self.order}"

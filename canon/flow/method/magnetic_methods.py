@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from canon.flow.method.composition import check_order, weights_of_order
 from canon.flow.method.engine import FIXED_STEPS
-from canon.flow.method.nonseparable_splitting import COMPOSITIONS, weights_of_order
 
 __all__ = ["Boris", "MagneticSplitting"]
 
@@ -55,7 +55,7 @@ class Boris:
     )
 
     def __post_init__(self) -> None:
-        _check_order(self.order, "Boris")
+        check_order(self.order, "Boris")
 
     def __str__(self) -> str:
         return f"boris-{self.order}"
@@ -111,7 +111,7 @@ class MagneticSplitting:
     )
 
     def __post_init__(self) -> None:
-        _check_order(self.order, "MagneticSplitting")
+        check_order(self.order, "MagneticSplitting")
 
     def __str__(self) -> str:
         return f"magnetic-{self.order}"
@@ -125,8 +125,3 @@ class MagneticSplitting:
     def stages(self) -> int:
         """Steps of order 2 in a step."""
         return len(weights_of_order(self.order))
-
-
-def _check_order(order: int, name: str) -> None:
-    if order not in COMPOSITIONS:
-        raise ValueError(f"{name}({order!r}): the order is one of {', '.join(map(str, COMPOSITIONS))}")

@@ -12,11 +12,12 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from canon.flow.method.adaptive_methods import DOP853, Taylor
+from canon.flow.method.composition import COMPOSITIONS
 from canon.flow.method.constrained_method import Rattle
 from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
 from canon.flow.method.magnetic_methods import Boris, MagneticSplitting
 from canon.flow.method.method import RK4, Gauss, Method, Splitting, TimeTransformed
-from canon.flow.method.nonseparable_splitting import COMPOSITIONS, ExtendedPhaseSpace, SemiexplicitSplitting
+from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
 from canon.flow.method.solvable_splitting import SABA, SBAB, WisdomHolman
 from canon.kernel.schemes.gauss_tableau import HIGHEST_STAGES
 from canon.kernel.schemes.perturbed_schemes import ABA

@@ -4,18 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from canon.flow.method.composition import check_order, weights_of_order
 from canon.flow.method.engine import FIXED_STEPS
-from canon.kernel.schemes.splitting_schemes import SCHEMES
 
-if TYPE_CHECKING:
-    from fractions import Fraction
-
-__all__ = ["COMPOSITIONS", "ExtendedPhaseSpace", "SemiexplicitSplitting", "weights_of_order"]
-
-COMPOSITIONS = {2: "verlet", 4: "suzuki-4", 6: "kahan-li-6", 8: "kahan-li-8"}
-"""The scheme whose kicks are the lengths of the steps of order 2 that a method of each order is composed of."""
+__all__ = ["ExtendedPhaseSpace", "SemiexplicitSplitting"]
 
 
 @dataclass(frozen=True)
@@ -62,7 +56,7 @@ class ExtendedPhaseSpace:
     )
 
     def __post_init__(self) -> None:
-        _check_order(self.order, "ExtendedPhaseSpace")
+        check_order(self.order, "ExtendedPhaseSpace")
         if not (math.isfinite(self.omega) and self.omega > 0):
             raise ValueError(
                 f"ExtendedPhaseSpace({self.order}, omega={self.omega}): give omega, a positive number in units of "
@@ -121,7 +115,7 @@ class SemiexplicitSplitting:
     )
 
     def __post_init__(self) -> None:
-        _check_order(self.order, "SemiexplicitSplitting")
+        check_order(self.order, "SemiexplicitSplitting")
 
     def __str__(self) -> str:
         return f"semiexplicit-{self.order}"
@@ -135,13 +129,3 @@ class SemiexplicitSplitting:
     def stages(self) -> int:
         """Evaluations of the derivatives of H in one repetition of a step."""
         return 2 * len(weights_of_order(self.order)) + 1
-
-
-def weights_of_order(order: int) -> tuple[Fraction, ...]:
-    """Return the lengths, in steps, of the steps of order 2 that a method of an order is composed of."""
-    return SCHEMES[COMPOSITIONS[order]].b
-
-
-def _check_order(order: int, name: str) -> None:
-    if order not in COMPOSITIONS:
-        raise ValueError(f"{name}({order!r}): the order is one of {', '.join(map(str, COMPOSITIONS))}")

@@ -43,8 +43,8 @@ def test_ellipsoidal_coordinates_separate_with_two_constants_in_involution():
     first, second, _ = (found.defined_as[c] for c in found.constants)
     for f, g in ((first, second), (first, H.H), (second, H.H)):
         bracket = poisson_bracket(f, g, Q, P)
-        assert sp.simplify(bracket.subs(PLACE)) == 0
-        assert sp.simplify(poisson_bracket(f, g + Q[0], Q, P).subs(PLACE)) != 0
+        assert bracket.subs(PLACE) == 0
+        assert poisson_bracket(f, g + Q[0], Q, P).subs(PLACE) != 0
 
 
 @pytest.mark.parametrize(
@@ -57,7 +57,7 @@ def test_the_constants_of_a_place_give_its_momenta(shift):
     values = {c: f.subs(PLACE) for c, f in found.defined_as.items()}
     for momentum in found.momenta:
         root = momentum.square.subs(values).subs(PLACE)
-        assert sp.nsimplify(root) == (momentum.p - momentum.shift).subs(PLACE) ** 2
+        assert root == (momentum.p - momentum.shift).subs(PLACE) ** 2
         if momentum.constant is not None:
             assert momentum.defined_as.subs(PLACE) == values[momentum.constant]
 

@@ -326,33 +326,19 @@ def _kept_tori(
         found = list(islice(_bounded(integral, there, ends), TORI)) if there.box else compared[:TORI]
     except NotHolomorphicError as reason:
         raise Undecided(f"no quadrature of this H is certified: {reason}") from None
-    _check_enough(len(found), time.monotonic() > ends, budget)
+    if len(found) < TORI:
+        raise Undecided(
+            f"bounded motions were found through {len(found)} of {POINTS} points of the domain only; narrow it"
+        )
     if len({tuple(cycle.kind for cycle in torus.cycles) for torus in (*found, *compared)}) > 1:
         raise Undecided(
             "the domain has motions of several kinds, librations and rotations; narrow it to those that are meant"
         )
     known = tuple(None if action is None else action.J for action in closed_actions(found[0], LONGEST))
-    if any(
-        not _lies_in(J, torus, i)
-        for torus in (*found, *compared)
-        for i, J in enumerate(known)
-        if J is not None
-    ):
+    if not all(_lie_in(known, torus) for torus in (*found, *compared)):
         raise Undecided("the actions are other functions in parts of the domain; narrow it")
     back = {symbol: f for f, symbol in frozen.items()}
     return _Tori(integral, tuple(found), tuple(J if J is None else exchanged(J, back) for J in known), back)
-
-
-def _check_enough(found: int, late: bool, budget: float) -> None:
-    if found < TORI and late:
-        raise Undecided(
-            f"actions of {counted(found, 'motion')} were found in {budget:g} s; give a larger budget, or narrow "
-            "the domain"
-        )
-    if found < TORI:
-        raise Undecided(
-            f"bounded motions were found through {found} of {POINTS} points of the domain only; narrow it"
-        )
 
 
 def _frozen(H: Expr, state: Sequence[Symbol]) -> dict[Expr, Expr]:
@@ -366,12 +352,20 @@ def _frozen(H: Expr, state: Sequence[Symbol]) -> dict[Expr, Expr]:
 
 
 def _bounded(integral: CompleteIntegral, domain: Domain, ends: float) -> Iterator[ActionVariables]:
-    """Yield tori through points of a domain, where there are bounded motions, until the time ends."""
+    """Yield tori through points of a domain, where there are bounded motions.
+
+    Raises
+    ------
+    Undecided
+        Where the time ends before the points do: fewer tori would let a formula pass that is another one elsewhere.
+    """
     H = integral.H
     symbols = {s for s in H.H.free_symbols if isinstance(s, Symbol)} | {*H.q, *H.p}
     for point in domain.points(symbols, POINTS):
         if time.monotonic() > ends:
-            return
+            raise Undecided(
+                "actions all over the domain were not found in the budget; give a larger one, or narrow the domain"
+            )
         start = {z: point[z] for z in (*H.q, *H.p)}
         parameters = {s: point[s] for s in symbols - set(start)}
         try:
@@ -380,9 +374,10 @@ def _bounded(integral: CompleteIntegral, domain: Domain, ends: float) -> Iterato
             continue
 
 
-def _lies_in(J: Expr, torus: ActionVariables, i: int) -> bool:
+def _lie_in(known: Sequence[Expr | None], torus: ActionVariables) -> bool:
     with precision(BITS):
-        return lies_in(J, torus.values, torus.J[i])
+        pairs = zip(known, torus.J, strict=True)
+        return all(lies_in(J, torus.values, ball) for J, ball in pairs if J is not None)
 
 
 def _refuted(

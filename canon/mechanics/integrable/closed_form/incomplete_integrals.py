@@ -2,7 +2,7 @@
 
 Each is counted from the lower turning point of a libration, or from q = 0 in a rotation, and comes with its whole value
 (I. S. Gradshteyn, I. M. Ryzhik, Table of Integrals, 2.26; P. F. Byrd, M. D. Friedman, Handbook of Elliptic Integrals,
-213, 218, 219, 233, 290). Arccosines run from 0 to π over a libration, amplitudes φ from −π/2 to π/2.
+213, 218, 219). Arccosines run from 0 to π over a libration, amplitudes φ from −π/2 to π/2.
 """
 
 from __future__ import annotations
