@@ -253,6 +253,22 @@ SECTIONS = {
             ),
         ),
     ),
+    "roofline": Section(
+        "How near the loops come to what the processor can do: the least time that the busiest of its units needs for "
+        "a step, as a share of the time that a step takes.",
+        (
+            Table(
+                ("doubles a register", "fma", "add", "both", "div", "sqrt", "load", "store"),
+                r"^  (\d) wide  fma +([\d.]+)  add +([\d.]+)  both +([\d.]+)  div +([\d.]+)  sqrt +([\d.]+)  "
+                r"load +([\d.]+)  store +([\d.]+)$",
+            ),
+            Table(
+                ("system", "method", "numbers", "orbits", "ns a step", "% of the bound", "by"),
+                r"^(\S.*?) {2,}(\S+) +(double|compensated|double-double) +(\d+) orbits? +([\d.]+) ns .* "
+                r"(\d+) % of the bound by (\w+)$",
+            ),
+        ),
+    ),
     "brouwer": Section(
         "Over the whole run the energy error grows as the root of the number of steps: Brouwer's "
         "law, the least that rounding allows.",
@@ -284,12 +300,12 @@ SECTIONS = {
         ),
     ),
     "peers": Section(
-        "Where the last column is below 1, canon's cheapest method takes less time than that of any "
-        "other library that reaches the accuracy.",
+        "Where a ratio is below 1, canon's cheapest method takes less time than that of any other library that "
+        "reaches the accuracy: by its loop, and by the whole of a further call of propagate over a thousand periods.",
         (
             Table(
-                ("problem", "max |ΔE/E|", "canon / the cheapest other"),
-                r"^    canon ([\d.]+) × the cheapest other",
+                ("problem", "max |ΔE/E|", "canon / the cheapest other", "with canon's whole call"),
+                r"^    canon ([\d.]+) × the cheapest other(?:, ([\d.]+) × with the call)?",
                 under=r"^(\S.*), max \|ΔE/E\| ≤ (\S+)$",
             ),
         ),

@@ -32,6 +32,7 @@ BENCHMARKS = {
     "growth": "How the time grows: sites, bodies, links, claims, cases, samples, orbits",
     "sections": "Poincaré sections of ensembles",
     "kernels": "Compiled loops, beside a C program",
+    "roofline": "Compiled loops, beside what the processor can do",
     "constraints": "Constraints kept by RATTLE, beside a C program",
     "rotations": "Rotating bodies and charges, by methods of their own",
     "brouwer": "Energy error over 10⁸ steps: Brouwer's law",

@@ -320,7 +320,8 @@ def _carried_out(
     record = RunRecord(task.ended(found), found, moving)
     defect = record.measured.defect
     if task.system.autonomous and not any(met.after is not None for met in found.crossings):
-        warn_of_jumps(task.system, found, defect.reshape(len(defect), -1))
+        start = np.zeros(1) if moving is not None else np.atleast_1d(record.energies.values[0])
+        warn_of_jumps(task.system, found, start, defect.reshape(len(defect), -1))
     if moving is not None:
         check_left_out(moving, found)
         check_contacts(moving, found)

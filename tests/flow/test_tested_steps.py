@@ -53,7 +53,7 @@ def test_a_flat_well_is_crossed_in_steps_that_are_short_enough() -> None:
 
 def test_untested_steps_go_to_infinity_there(monkeypatch: pytest.MonkeyPatch) -> None:
     """The wrong twin: the well has no way out."""
-    monkeypatch.setattr(taylor_orbit, "may_have_gaps", lambda *_: False)
+    monkeypatch.setattr(taylor_orbit, "_is_tested", lambda *_: False)
     with pytest.raises(NonFiniteStateError):
         propagate(well(16), (0, 3), START, samples=5)
 

@@ -31,12 +31,11 @@ def evaluate(
 ) -> list[Any]:
     """Return the values of nodes; see :meth:`canon.expression.graph.graph.Graph.evaluate`."""
     wanted, done = tuple(nodes), list[Any]()
-    reached = graph.reachable(wanted)
+    kept = None
     with arithmetic.quiet():
-        if len(reached) <= _LARGE and (arithmetic is FLOAT64 or arithmetic is LONGDOUBLE):
-            steps, places = _kept_steps(graph, wanted, wide=arithmetic is LONGDOUBLE)
-        else:
-            steps, places = _steps(graph, wanted, arithmetic)
+        if arithmetic is FLOAT64 or arithmetic is LONGDOUBLE:
+            kept = _kept_steps(graph, wanted, wide=arithmetic is LONGDOUBLE)
+        steps, places = _steps(graph, wanted, arithmetic) if kept is None else kept
         for function, operands, value in steps:
             if function is None:
                 done.append(value)
@@ -53,7 +52,10 @@ def evaluate(
 
 
 @functools.lru_cache(maxsize=_KEPT)
-def _kept_steps(graph: Arena, nodes: tuple[int, ...], *, wide: bool) -> tuple[list[_Step], list[int]]:
+def _kept_steps(graph: Arena, nodes: tuple[int, ...], *, wide: bool) -> tuple[list[_Step], list[int]] | None:
+    """Return the steps of small evaluations, kept for the next one; None where there are many."""
+    if len(graph.reachable(nodes)) > _LARGE:
+        return None
     return _steps(graph, nodes, LONGDOUBLE if wide else FLOAT64)
 
 
@@ -84,15 +86,11 @@ def _step(graph: Arena, node: int, place: Mapping[int, int], arithmetic: Arithme
     exponent = graph.nodes[operands[1]]
     if exponent.kind == "number":
         assert isinstance(exponent.value, Fraction)
-        return functools.partial(_raised, arithmetic, exponent.value), own[:1], None
+        return arithmetic.raising_to(exponent.value), own[:1], None
     return arithmetic.power, own, None
 
 
 _FOLDED: dict[str, Callable[..., Any]] = {"add": operator.add, "mul": operator.mul}
-
-
-def _raised(arithmetic: Arithmetic, exponent: Fraction, base: Any) -> Any:
-    return arithmetic.power(base, exponent)
 
 
 def _value_of(values: Mapping[Symbol, Any], symbol: Symbol) -> Any:

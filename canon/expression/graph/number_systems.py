@@ -63,13 +63,19 @@ class Arithmetic:
 
     def power(self, base: Any, exponent: Any) -> Any:
         """Return base**exponent: products for whole exponents, a square root for halves."""
-        if not isinstance(exponent, Fraction):
-            return base**exponent
-        whole, part = exponent.numerator, exponent.denominator
+        return self.raising_to(exponent)(base) if isinstance(exponent, Fraction) else base**exponent
+
+    def raising_to(self, exponent: Fraction) -> Callable[[Any], Any]:
+        """Return what raises a base to an exponent: products for whole exponents, a square root for halves."""
+        whole, part, root = exponent.numerator, exponent.denominator, self.root
         if part > 2:
-            return base ** self.number(exponent)
-        base = base if part == 1 else self.root(base)
-        return base**whole if whole > 0 else 1 / base**-whole
+            number = self.number(exponent)
+            return lambda base: base**number
+        if part == 1:
+            return (lambda base: base**whole) if whole > 0 else (lambda base: 1 / base**-whole)
+        if abs(whole) == 1:
+            return root if whole > 0 else (lambda base: 1 / root(base))
+        return (lambda base: root(base) ** whole) if whole > 0 else (lambda base: 1 / root(base) ** -whole)
 
     def quiet(self) -> AbstractContextManager[Any]:
         """Keep NumPy from warning where a value leaves a function's domain: it returns NaN or inf."""

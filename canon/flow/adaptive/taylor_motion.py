@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.flow.adaptive.kinked_orbit import KinkedOrbit, kinked_orbits_of
+from canon.flow.adaptive.spare_integrators import spare_integrators
 from canon.flow.adaptive.state_unit import state_unit
 from canon.flow.adaptive.taylor_events import TaylorEvents
-from canon.flow.adaptive.taylor_orbit import Slice, TaylorOrbit, orbits_of
+from canon.flow.adaptive.taylor_orbit import Slice, TaylorOrbit, numbers_of, orbits_of
 from canon.flow.kinked.regimes import kinks_of
 from canon.flow.run.samples import Samples
 from canon.kernel.heyoka_bridge import heyoka_doubles, heyoka_number
@@ -80,7 +81,7 @@ def taylor_motion(
     t0, span = plan.last(first), grid[-1] - grid[0]
     unit = state_unit(system, states[0] if so_far is None else so_far.y[:, 0], plan)
     taylor_events = TaylorEvents(system, events, precision, number, forward=plan.forward, unit=unit)
-    kinks = kinks_of(system)
+    kinks, smooth = kinks_of(system), list[TaylorOrbit]()
     if kinks is None:
         smooth = orbits_of(system, states, t0, method, number, taylor_events, span, max_step)
         if so_far is None and events and taylor_events.at_zero(float(plan.instants[0]), *states):
@@ -95,7 +96,7 @@ def taylor_motion(
     run = _TaylorRun(
         orbits,
         taylor_events,
-        [_stacked(states, number)],
+        [numbers_of(states, number)[np.newaxis]],
         [orbit.beyond for orbit in orbits],
         () if so_far is None else so_far.crossings,
     )
@@ -109,6 +110,8 @@ def taylor_motion(
         t = np.append(t[: y.shape[1] - 1], taylor_events.crossings[-1].t)
     if events:
         taylor_events.check_domain(t, y[:, :, 0])
+    elif kinks is None and number is float:
+        spare_integrators(system, method.tolerance, unit).put_aside([orbit.integrator for orbit in smooth])
     return Samples(
         t=t,
         y=y,
@@ -122,13 +125,6 @@ def taylor_motion(
         crossings=tuple(taylor_events.crossings),
         dense=tuple(Polynomials(tuple(orbit.pieces), number, unit) for orbit in orbits) if dense else (),
     )
-
-
-def _stacked(states: tuple[Array, Array], number: Callable[[Fraction], Any]) -> Any:
-    """Return the states to start from in heyoka's numbers, shape (1, 2n, orbits)."""
-    pairs = zip(states[0].ravel().tolist(), states[1].ravel().tolist(), strict=True)
-    exact = [number(Fraction(high) + Fraction(low)) for high, low in pairs]
-    return np.array(exact).reshape(1, *states[0].shape)
 
 
 @dataclass(eq=False)

@@ -13,6 +13,7 @@ import numpy as np
 
 from canon.flow.adaptive.first_step import first_step
 from canon.flow.adaptive.held_steps import HeldSteps, LocalisedTerms, finer
+from canon.flow.adaptive.spare_integrators import spare_integrators
 from canon.flow.adaptive.state_unit import is_finite
 from canon.flow.adaptive.tested_steps import TestedSteps
 from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
@@ -28,10 +29,15 @@ if TYPE_CHECKING:
     from canon.flow.run.event import PreparedEvent
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["Slice", "TaylorOrbit", "orbits_of"]
+__all__ = ["Slice", "TaylorOrbit", "numbers_of", "orbits_of"]
 
 _MANY_STEPS, _CREEPING = 50_000, 1e-10
 """Where so many steps pass less than this part of what is left, they shrink towards a singularity."""
+
+_ONE = Fraction(1)
+
+_SYSTEMS = 64
+"""Systems of which it is known how to step them."""
 
 _SMALL_PART = 2.0**-30
 """What part of a step is passed without events after one that changed the state."""
@@ -279,27 +285,44 @@ def orbits_of(
     span: Any,
     max_step: float | None = None,
 ) -> list[TaylorOrbit]:
-    """Compile one integrator and copy it for the other orbits."""
-    starts = [
-        [Fraction(a) + Fraction(b) for a, b in zip(high, low, strict=True)]
-        for high, low in zip(states[0].T.tolist(), states[1].T.tolist(), strict=True)
-    ]
+    """Compile one integrator and copy it for the other orbits; in doubles without events a spare one will do."""
+    starts = numbers_of(states, number, taylor_events.unit).T
     unit, events = taylor_events.unit, taylor_events.heyoka_events()
     terms = LocalisedTerms.of(system, number, method.tolerance, unit, taylor_events.forward)
-    settings = system, starts[0], t0, method.tolerance, number
+    exact = [
+        Fraction(a) + Fraction(b) for a, b in zip(*(part[:, 0].tolist() for part in states), strict=True)
+    ]
+    settings = system, exact, t0, method.tolerance, number
 
     @functools.cache
     def held() -> Any:
         return taylor_integrator(*settings, terms.beside({}), unit)
 
-    first = taylor_integrator(*settings, terms.beside(events) if events else events, unit)
+    if number is float and not events:
+        first = spare_integrators(system, method.tolerance, unit).take(exact, t0)
+    else:
+        first = taylor_integrator(*settings, terms.beside(events) if events else events, unit)
     free = taylor_integrator(*settings, unit=unit) if events else None
     longest = None if max_step is None else number(Fraction(max_step))
-    tested = may_have_gaps(system.graph, system.rates, first.order)
+    tested = _is_tested(system, first.order)
     made = list[TaylorOrbit]()
     for start in starts:
         integrator = copy.deepcopy(first) if made else first
-        integrator.state[:] = [number(x / unit) for x in start]
+        integrator.state[:], integrator.time = start, number(t0)
         steps = HeldSteps(terms, held, waits=not events)
         made.append(TaylorOrbit(integrator, taylor_events, free, span, steps, longest, tested))
     return made
+
+
+def numbers_of(states: tuple[Array, Array], number: Callable[[Fraction], Any], unit: Fraction = _ONE) -> Any:
+    """Return states, sums of two doubles, in parts of a unit, a power of two, in heyoka's numbers."""
+    if number is float:  # rounded once, as exact numbers are
+        return (states[0] + states[1]) / float(unit)
+    pairs = zip(states[0].ravel().tolist(), states[1].ravel().tolist(), strict=True)
+    exact = [number((Fraction(high) + Fraction(low)) / unit) for high, low in pairs]
+    return np.array(exact).reshape(states[0].shape)
+
+
+@functools.lru_cache(maxsize=_SYSTEMS)
+def _is_tested(system: HamiltonEquations, order: int) -> bool:
+    return may_have_gaps(system.graph, system.rates, order)

@@ -265,6 +265,7 @@ def flipped(signs: Signs, k: int) -> Signs:
     return (*signs[:k], -signs[k], *signs[k + 1 :])
 
 
+@functools.lru_cache(maxsize=_KEPT)
 def kinks_of(system: HamiltonEquations) -> Kinks | None:
     """Return the kinks of equations, or None where they are smooth.
 

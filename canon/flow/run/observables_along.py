@@ -91,7 +91,7 @@ class AccuracyWarning(UserWarning):
     """Warning that a computed motion is certainly not that of the system."""
 
 
-def warn_of_jumps(system: HamiltonEquations, samples: Samples, change: Array) -> None:
+def warn_of_jumps(system: HamiltonEquations, samples: Samples, start: Array, change: Array) -> None:
     """Warn where the energy of an autonomous system changed as by a step over a singularity.
 
     Steps of one size may pass a collision from one side to the other without ever meeting an infinity. The
@@ -104,14 +104,16 @@ def warn_of_jumps(system: HamiltonEquations, samples: Samples, change: Array) ->
         The equations.
     samples
         The motion.
-    change
-        H − H(start), shape (times, orbits).
+    start, change
+        H at the start, shape (orbits,), or 0 where it is not at hand; and how much it changes, shape (times, orbits).
 
     Warns
     -----
     AccuracyWarning
         With the interval of time in which that was first seen.
     """
+    if (np.abs(change) <= _IMPLAUSIBLE * np.abs(start)).all():  # its terms together are no smaller
+        return
     wrong = jumped(system, samples, change)
     if not wrong.any():
         return
@@ -150,6 +152,8 @@ def size_of_terms(system: HamiltonEquations, samples: Samples) -> Array:
     with np.errstate(all="ignore"):
         found = system.graph.evaluate(_terms(system), values)
     sizes = np.sum([abs(np.broadcast_to(v, samples.y.shape[1:])) for v in found], axis=0)
+    if (sizes[0] > _VANISHING * sizes.max(axis=0)).all():
+        return sizes[0]
     usual, large = np.median(sizes, axis=0), np.quantile(sizes, 0.9, axis=0)
     # A motion that begins and soon ends at rest, as with dry friction, has terms on the way only.
     usual = np.where(sizes[0] > 0, usual, large)

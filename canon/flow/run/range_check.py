@@ -37,7 +37,8 @@ _RANGE = 300.0
 
 def check_magnitudes(
     system: HamiltonEquations,
-    states: Array,
+    state: Array,
+    rates: Array,
     span: tuple[Fraction, Fraction],
     method: Method,
     precision: str | int | None,
@@ -47,23 +48,26 @@ def check_magnitudes(
     r⁻³ underflows at r = 10¹¹⁰ however large the mass is that it is multiplied with, and the motion would go
     straight on. Only the first state is looked at, and only where its numbers are far from 1.
 
+    Parameters
+    ----------
+    system
+        The equations.
+    state, rates
+        The first state and its rates of change in doubles, each of shape (2n,).
+    span, method, precision
+        From when to when, how, and in which numbers, of the exponents of doubles.
+
     Raises
     ------
     ValueError
         The equations in doubles differ from those in numbers of any size; or the coefficients of Taylor series
         leave doubles, as time is measured in units much too large or too small.
     """
-    if not is_narrow(precision):
-        return
     start = span[0]
     if precision == "double-double":
-        _check_angles(system, states[:, 0], start)
-    state = states[:, 0]
+        _check_angles(system, state, start)
     nodes = [*system.velocity, *system.force]
     point = [*state.tolist(), float(start)]
-    rates = np.array(
-        system.graph.evaluate(nodes, dict(zip(system.inputs, point, strict=True)), FLOAT64), float
-    )
     if method.engine is HEYOKA:
         _check_series(system, point, rates, abs(float(span[1] - start)), method.order)
     sizes = abs(np.concatenate([state, rates]))

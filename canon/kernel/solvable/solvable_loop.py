@@ -45,6 +45,9 @@ class _Pair:
     commutator: Fraction = Fraction(0)
 
 
+_STEPS = 4
+"""Step sizes of a loop whose numbers are kept for the next motion."""
+
 _NUMBERS = 3
 """Numbers of a pair in c."""
 
@@ -133,6 +136,7 @@ def solvable_loop(
         w.copy(e, w.at(record, 2 + size), size)
     code = compiled_function(w, "advance", PARAMETERS, SIGNATURE)
 
+    @functools.lru_cache(maxsize=_STEPS)
     def coefficients(h: Fraction) -> list[Fraction]:
         flat = [pair for table in tables for pair in table]
         numbers = ((pair.kick * h, pair.flow * h, 2 * pair.commutator * h**3) for pair in flat)
