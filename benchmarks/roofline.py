@@ -36,6 +36,7 @@ from kernels import bodies, fput, henon_heiles, kepler
 
 from canon import Gauss, Hamiltonian, Splitting, WisdomHolman, propagate
 from canon.flow.fixed_step import compiled_loop
+from canon.kernel.llvm import machine_code
 from canon.kernel.llvm.machine_code import compiled, simd_bytes
 from canon.kernel.llvm.writer import LIBRARY
 from canon.scene import find
@@ -193,12 +194,13 @@ class Counting:
     """The compiled functions of a run, each with its counters."""
 
     def __init__(self) -> None:
-        self.made: list[tuple[Any, list[Counter[tuple[str, int]]]]] = []
+        self.blocks: list[list[Counter[tuple[str, int]]]] = []
+        self.engines: list[Any] = []
 
     def total(self) -> Counter[tuple[str, int]]:
         """Return how many instructions of each kind and width were run."""
         total: Counter[tuple[str, int]] = Counter()
-        for engine, blocks in self.made:
+        for engine, blocks in zip(self.engines, self.blocks, strict=True):
             address = engine.get_global_value_address("canon.counts")
             runs = (ctypes.c_int64 * len(blocks)).from_address(address)
             for times, held in zip(runs, blocks, strict=True):
@@ -210,14 +212,17 @@ class Counting:
 @contextlib.contextmanager
 def counting() -> Iterator[Counting]:
     """Have every function that is compiled inside count its instructions, and none be kept beyond."""
-    made, compiler = Counting(), llvm.create_mcjit_compiler
+    made, start_engine = Counting(), llvm.create_mcjit_compiler
     kept = [value for value in vars(compiled_loop).values() if hasattr(value, "cache_clear")]
 
-    def counted(module: Any, machine: Any) -> Any:
-        text, blocks = with_counters(str(module))
-        engine = compiler(llvm.parse_assembly(text), machine)
-        made.made.append((engine, blocks))
-        return engine
+    def with_code(ir: str, machine: Any) -> bytes:
+        text, blocks = with_counters(str(machine_code.optimized(ir, machine)))
+        made.blocks.append(blocks)
+        return machine.emit_object(llvm.parse_assembly(text))
+
+    def started(module: Any, machine: Any) -> Any:
+        made.engines.append(start_engine(module, machine))
+        return made.engines[-1]
 
     def forget() -> None:
         for loops in kept:
@@ -226,7 +231,9 @@ def counting() -> Iterator[Counting]:
     forget()
     # One thread counts: the counters are plain numbers.
     with (
-        mock.patch.object(llvm, "create_mcjit_compiler", counted),
+        mock.patch.object(machine_code, "object_code", with_code),
+        mock.patch.object(machine_code, "kept_or_made", lambda _made_of, make: make()),
+        mock.patch.object(llvm, "create_mcjit_compiler", started),
         mock.patch("os.cpu_count", return_value=1),
     ):
         yield made

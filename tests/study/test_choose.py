@@ -159,7 +159,9 @@ def test_close_encounters_are_followed_by_steps_that_vary():
     assert isinstance(choice.method, TimeTransformed)
     whole = pilot(choice.question, choice.chosen.setting, choice.span)
     assert whole.bound <= 1e-7
-    assert whole.steps > 60 * 200
+    # By either method in a fictitious time, whichever was cheaper where this ran: of order 2, or 8 with 17 stages.
+    assert whole.steps > 30 * 200
+    assert whole.evaluations > 60 * 200
     steps = {str(each.method): each.evaluations for each in choice.candidates}
     assert steps[str(choice.method)] < 0.2 * min(steps[str(method)] for method in steady)
 

@@ -17,6 +17,8 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from canon.kernel.llvm.kept_code import kept_or_made
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -31,6 +33,9 @@ if hasattr(
     os.register_at_fork(
         before=_COMPILING.acquire, after_in_parent=_COMPILING.release, after_in_child=_COMPILING.release
     )
+
+_OPTIONS = "1: level 3, loops vectorized and unrolled, single numbers too in small modules"
+"""What :func:`object_code` does; kept code made with other words is not used."""
 
 _LARGE = 200_000
 """Above this size of a module the search for parallel scalars (SLP) takes longer than it saves."""
@@ -47,7 +52,7 @@ class MachineCode:
     address
         Its address, for other compiled code to call.
     seconds
-        Wall-clock time it took to optimize and compile.
+        Wall-clock time it took to optimize and compile, or to load what an earlier process had compiled.
     engine
         What owns the machine code: it lives as long as this object.
     """
@@ -84,18 +89,42 @@ def compiled(ir: str, function: str, arguments: Sequence[Any], libm: Sequence[st
         machine = _target_machine()
         for name in libm:
             llvm.add_symbol(name, _address(name))
-        module = llvm.parse_assembly(ir)
-        module.verify()
-        tuning = llvm.create_pipeline_tuning_options(speed_level=3)
-        tuning.loop_vectorization = tuning.loop_unrolling = True
-        tuning.slp_vectorization = len(ir) < _LARGE
-        builder = llvm.create_pass_builder(machine, tuning)
-        builder.getModulePassManager().run(module, builder)
-        engine = llvm.create_mcjit_compiler(module, machine)
+        code = kept_or_made(f"{_compiler()}\n{ir}", lambda: object_code(ir, machine))
+        engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
+        engine.add_object_file(llvm.ObjectFileRef.from_data(code))
         engine.finalize_object()
         address = engine.get_function_address(function)
     call = ctypes.CFUNCTYPE(None, *arguments)(address)
     return MachineCode(call, address, time.perf_counter() - started, engine)
+
+
+def object_code(ir: str, machine: binding.TargetMachine) -> bytes:
+    """Optimize and compile a module for a processor, and return the object file."""
+    return machine.emit_object(optimized(ir, machine))
+
+
+def optimized(ir: str, machine: binding.TargetMachine) -> binding.ModuleRef:
+    """Return a module as LLVM has optimized it for a processor."""
+    import llvmlite.binding as llvm
+
+    module = llvm.parse_assembly(ir)
+    module.verify()
+    tuning = llvm.create_pipeline_tuning_options(speed_level=3)
+    tuning.loop_vectorization = tuning.loop_unrolling = True
+    tuning.slp_vectorization = len(ir) < _LARGE
+    builder = llvm.create_pass_builder(machine, tuning)
+    builder.getModulePassManager().run(module, builder)
+    return module
+
+
+@functools.cache
+def _compiler() -> str:
+    """Return what code depends on beside its program: the compiler, how it is told to work, and the processor."""
+    import llvmlite
+    import llvmlite.binding as llvm
+
+    processor = llvm.get_default_triple(), llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
+    return "\n".join((_OPTIONS, llvmlite.__version__, str(llvm.llvm_version_info), *processor))
 
 
 @functools.cache

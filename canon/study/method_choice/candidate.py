@@ -14,6 +14,7 @@ from canon.flow.equations.holonomic_motion import NotForRattleError
 from canon.flow.equations.lie_poisson_search import NoLiePoissonPartsError
 from canon.flow.fixed_step.gauge_integrals import gauge_shifts
 from canon.flow.method.constrained_method import Rattle
+from canon.flow.method.engine import FICTITIOUS_TIME
 from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
 from canon.flow.method.magnetic_methods import Boris, MagneticSplitting
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor, TimeTransformed
@@ -260,8 +261,14 @@ class TriedSetting:
         return self.pilot.setting.knob
 
 
-def tried_with(question: Question, setting: Setting, span: float) -> TriedSetting:
-    """Return a setting after a pilot run of that span."""
+def tried_with(
+    question: Question, setting: Setting, span: float, like: TriedSetting | None = None
+) -> TriedSetting:
+    """Return a setting after a pilot run of that span.
+
+    In a fictitious time, where runs to time a step by are dear, a step costs what it did in ``like``, a pilot run of
+    the same method with another step.
+    """
     found = pilot(question, setting, span)
     if found.lost:
         return TriedSetting(found, math.inf, question.span / span * found.steps)
@@ -270,6 +277,11 @@ def tried_with(question: Question, setting: Setting, span: float) -> TriedSettin
         for since, y0 in question.elsewhere:
             later = pilot(question.moved(since, y0), setting, min(span, question.span - since))
             error = max(error, expected_error(later, question.span, question.observable))
+    if like is not None and math.isfinite(like.error) and setting.method.engine is FICTITIOUS_TIME:
+        earlier = like.pilot
+        return TriedSetting(
+            found, error, like.cost * (found.steps / found.span) / (earlier.steps / earlier.span)
+        )
     try:
         rate = seconds_per_time(question, found.setting, span)
     except NonFiniteStateError:  # with a step a little smaller, to divide another span

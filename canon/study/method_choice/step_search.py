@@ -95,9 +95,10 @@ def searched(
     setting = Setting(method, step=first, precision=precision)
     good: TriedSetting | None = None
     bad: TriedSetting | None = None
+    tried: TriedSetting | None = None
     ceiling, lost = math.inf, 0
     for _ in range(PILOTS):
-        tried = tried_with(question, setting, span)
+        tried = tried_with(question, setting, span, tried)
         lost += math.isinf(tried.error)
         if lost == LOST:
             return nothing(setting, "its error grows too fast")
@@ -175,7 +176,7 @@ def _still_larger(
     """Return a much larger step that keeps the accuracy too, where there is one: errors need not fall evenly."""
     for factor in LARGER:
         if good.cost / factor < cheapest:
-            tried = tried_with(question, good.pilot.setting.turned(good.knob * factor), span)
+            tried = tried_with(question, good.pilot.setting.turned(good.knob * factor), span, good)
             if tried.error <= MARGIN * accuracy:
                 return tried
     return good
