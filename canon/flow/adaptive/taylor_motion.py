@@ -110,8 +110,7 @@ def taylor_motion(
         t = np.append(t[: y.shape[1] - 1], taylor_events.crossings[-1].t)
     if events:
         taylor_events.check_domain(t, y[:, :, 0])
-    elif kinks is None and number is float:
-        spare_integrators(system, method.tolerance, unit).put_aside([orbit.integrator for orbit in smooth])
+    _put_aside(taylor_events, method, number, smooth)
     return Samples(
         t=t,
         y=y,
@@ -125,6 +124,18 @@ def taylor_motion(
         crossings=tuple(taylor_events.crossings),
         dense=tuple(Polynomials(tuple(orbit.pieces), number, unit) for orbit in orbits) if dense else (),
     )
+
+
+def _put_aside(
+    taylor_events: TaylorEvents,
+    method: Taylor,
+    number: Callable[[Fraction], Any],
+    orbits: Sequence[TaylorOrbit],
+) -> None:
+    """Keep the integrators of orbits that have ended for the next motion, where they are of the kind that is kept."""
+    if number is float and not taylor_events.events:
+        spare = spare_integrators(taylor_events.system, method.tolerance, taylor_events.unit)
+        spare.put_aside([orbit.integrator for orbit in orbits])
 
 
 @dataclass(eq=False)
