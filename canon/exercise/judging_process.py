@@ -33,6 +33,8 @@ START = 60.0
 """Seconds that a worker may take to start, on a slow or busy machine."""
 GRACE = 0.35
 """Seconds beyond its budget that a judgement may take to come to its own end before it is killed."""
+AT_ONCE = 0.05
+"""A process that ends within so many seconds of a claim's coming was killed before it: another one is asked."""
 LOOK = 0.1
 """Seconds between looks at how long a process has worked."""
 FEEDBACK = 12.0
@@ -87,6 +89,14 @@ class Worker:
         """
         if claim.errors:
             return invalid(claim, "\n".join(error.brief for error in claim.errors))
+        begun = time.monotonic()
+        found = self._asked(claim)
+        if found.known == BROKE_OFF and time.monotonic() - begun < AT_ONCE:
+            found = self._asked(claim)  # it was killed before, while it waited for a claim
+        return found
+
+    def _asked(self, claim: Claim) -> Judgement:
+        """Return what a running process says of a claim."""
         try:
             child = self._running()
         except (Late, Ended, OSError):

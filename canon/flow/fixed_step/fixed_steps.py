@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
 import os
 import threading
@@ -32,6 +33,9 @@ if TYPE_CHECKING:
 
 __all__ = ["fixed_steps", "planned"]
 
+_FEW = 1000
+"""Plans of so many samples are kept for the next motion of the same length."""
+
 
 def planned(wanted: Sampling, step: float | None, method: Method) -> Plan:
     """Return the plan of a run: the largest step, not above the given one, that divides the span.
@@ -41,8 +45,16 @@ def planned(wanted: Sampling, step: float | None, method: Method) -> Plan:
     ValueError
         The step is missing or makes no sense.
     """
+    few = wanted.times is None and wanted.samples <= _FEW and isinstance(step, float)
+    return (_kept_plan if few else _planned)(wanted, step, method)
+
+
+def _planned(wanted: Sampling, step: float | None, method: Method) -> Plan:
     steps = steps_over(wanted.start, wanted.end, step, method)
     return fixed_plan(wanted.start, (wanted.end - wanted.start) / steps, tuple(wanted.stops(steps)))
+
+
+_kept_plan = functools.lru_cache(maxsize=64)(_planned)
 
 
 def fixed_steps(

@@ -1,0 +1,102 @@
+"""Whatever is asked of a judging pool, in whatever order, and whoever kills its processes: each claim gets its verdict.
+
+A machine of hypothesis judges right, wrong, late and ill-formed claims, one by one and many at a time, kills processes
+that are idle, and looks at the verdicts and at what is running.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from contextlib import suppress
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, Phase, settings
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule, run_state_machine_as_test
+
+from canon.exercise import JudgePool
+from canon.exercise.sheet.sheet import claim_from
+
+WORKERS = 2
+BASE = {"kind": "equality-only", "parameters": {"x": "real"}}
+CLAIMS: dict[str, dict[str, Any]] = {
+    "holds": {**BASE, "id": "right", "lhs": "sin(2*x)", "rhs": "2*sin(x)*cos(x)"},
+    "fails": {**BASE, "id": "wrong", "lhs": "sin(2*x)", "rhs": "2*sin(x)"},
+    "invalid": {**BASE, "id": "ill-formed", "lhs": "sin(2*x", "rhs": "2*sin(x)"},
+}
+VERDICTS = st.sampled_from(sorted(CLAIMS))
+"""Of claims; each is judged at face value, whatever came before it."""
+
+
+def is_running(pid: int) -> bool:
+    with suppress(ProcessLookupError):
+        os.kill(pid, 0)
+        return True
+    return False
+
+
+class PoolMachine(RuleBasedStateMachine):
+    """A pool of two processes."""
+
+    pool: JudgePool | None = None
+
+    @initialize()
+    def start(self) -> None:
+        self.pool, self.seen = JudgePool(workers=WORKERS, budget=20.0), set[int]()
+
+    def teardown(self) -> None:
+        if self.pool is None:
+            return
+        self.pool.close()
+        until = time.monotonic() + 30.0
+        while any(map(is_running, self.seen)) and time.monotonic() < until:
+            time.sleep(0.05)
+        assert not [pid for pid in self.seen if is_running(pid)], "a process outlives its pool"
+        with pytest.raises(ValueError, match="closed"):
+            self.pool.judge(CLAIMS["holds"])
+
+    @rule(verdict=VERDICTS)
+    def one(self, verdict: str) -> None:
+        assert self.pool is not None
+        assert self.pool.judge(CLAIMS[verdict]).status == verdict
+
+    @rule(verdicts=st.lists(VERDICTS, min_size=1, max_size=6))
+    def many(self, verdicts: list[str]) -> None:
+        assert self.pool is not None
+        claims = [claim_from({**CLAIMS[verdict], "id": f"c{k}"}) for k, verdict in enumerate(verdicts)]
+        found = list(self.pool.judged(claims))
+        assert [each.status for each in found] == verdicts
+        assert [each.id for each in found] == [claim.id for claim in claims]
+
+    @rule(verdicts=st.lists(VERDICTS, min_size=3, max_size=6))
+    def nobody_waits_for_the_rest(self, verdicts: list[str]) -> None:
+        assert self.pool is not None
+        claims = [claim_from({**CLAIMS[verdict], "id": f"c{k}"}) for k, verdict in enumerate(verdicts)]
+        assert next(iter(self.pool.judged(claims))).status == verdicts[0]
+
+    @rule(which=st.integers(0, WORKERS - 1))
+    def an_idle_process_is_killed(self, which: int) -> None:
+        assert self.pool is not None
+        running = self.pool.processes
+        if which < len(running):
+            with suppress(ProcessLookupError):
+                os.kill(running[which], signal.SIGKILL)
+
+    @invariant()
+    def no_more_processes_run_than_are_meant(self) -> None:
+        if self.pool is not None:
+            assert len(self.pool.processes) <= WORKERS
+            self.seen.update(self.pool.processes)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="processes are killed by a signal")
+def test_a_pool_judges_whatever_happens_to_it() -> None:
+    few = settings(
+        max_examples=8, stateful_step_count=12, deadline=None, phases=[Phase.generate],
+        suppress_health_check=[HealthCheck.too_slow],
+    )  # fmt: skip
+    run_state_machine_as_test(PoolMachine, settings=few)
