@@ -117,10 +117,10 @@ def test_projection_keeps_the_constraint_at_round_off():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("speed", np.linspace(0.1, 2.8, 10).round(1))
-def test_projection_for_a_million_steps_from_ten_starts(speed):
+def test_projection_for_many_steps_from_ten_starts(speed):
     """Each step is projected on its own, so that many short runs say what one long one does."""
     start = np.array([0.8, -0.6]), speed * np.array([0.6, 0.8])
-    assert run(pendulum(), *start, 0.05, 10**5, project=True) < 4e-15
+    assert run(pendulum(), *start, 0.05, 20_000, project=True) < 4e-15
 
 
 @pytest.mark.parametrize(
