@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -21,6 +22,9 @@ __all__ = ["check_magnitudes", "is_narrow"]
 
 _FAR = 1e100
 """Within 1/_FAR … _FAR nothing that a Hamiltonian of mechanics makes of numbers overflows or underflows."""
+
+_SYSTEMS = 64
+"""Systems of which it is kept that their parameters are ordinary numbers."""
 
 _LOST = 1e-6
 """A force that doubles get wrong by this part has overflowed or underflowed on the way."""
@@ -72,7 +76,7 @@ def check_magnitudes(
         _check_series(system, point, rates, abs(float(span[1] - start)), method.order)
     sizes = abs(np.concatenate([state, rates]))
     ordinary = (sizes == 0) | ((sizes > 1 / _FAR) & (sizes < _FAR))
-    if ordinary.all() and all(not x or 1 / _FAR < abs(x) < _FAR for x in system.parameters.values()):
+    if ordinary.all() and _has_ordinary_parameters(system):
         return
     digits = multiprecision(40)
     exact = {s: digits.number(x) for s, x in zip(system.inputs, map(Fraction, point), strict=True)}
@@ -84,6 +88,11 @@ def check_magnitudes(
                 "the way are beyond 1e±308. Choose units in which lengths, times and masses are nearer to 1, or "
                 "precision='extended'"
             )
+
+
+@functools.lru_cache(maxsize=_SYSTEMS)
+def _has_ordinary_parameters(system: HamiltonEquations) -> bool:
+    return all(not x or 1 / _FAR < abs(x) < _FAR for x in system.parameters.values())
 
 
 def _check_angles(system: HamiltonEquations, state: Array, start: Fraction) -> None:

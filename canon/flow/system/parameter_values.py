@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,7 @@ from canon.kernel.program.hamilton_equations import exact_number
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
+    from fractions import Fraction
 
     from sympy import Symbol
 
@@ -117,9 +119,16 @@ def check_given(
 
 
 def _check_kind(symbol: Symbol, value: Any, said: str) -> None:
-    number: Any = sp.Rational(exact_number(value, said))
-    for kind in _KINDS:
-        if getattr(symbol, f"is_{kind}") and not getattr(number, f"is_{kind}"):
-            raise ValueError(
-                f"{said} = {value}, but {symbol.name} was made as a {kind} symbol: give a {kind} number"
-            )
+    kind = _missing_kind(symbol, exact_number(value, said))
+    if kind:
+        raise ValueError(
+            f"{said} = {value}, but {symbol.name} was made as a {kind} symbol: give a {kind} number"
+        )
+
+
+@functools.lru_cache(maxsize=1024)
+def _missing_kind(symbol: Symbol, value: Fraction) -> str:
+    """Return what a symbol is said to be and a number is not, "" where it is all of that."""
+    number: Any = sp.Rational(value)
+    kinds = (kind for kind in _KINDS if getattr(symbol, f"is_{kind}") and not getattr(number, f"is_{kind}"))
+    return next(kinds, "")
