@@ -492,6 +492,6 @@ def test_half_valid_rewritings():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("block", range(20))
+@pytest.mark.parametrize("block", range(8))
 def test_many_half_valid_rewritings(block):
     assert sum(judge(seed, 300, 2.0) for seed in range(1000 * block, 1000 * block + 120)) > 8
