@@ -15,7 +15,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from contextlib import AbstractContextManager
 
-__all__ = ["FLOAT64", "LONGDOUBLE", "Arithmetic", "multiprecision"]
+__all__ = [
+    "FLOAT64", "LONGDOUBLE", "Arithmetic", "multiprecision", "numpy_function_names", "written_constant",
+]  # fmt: skip
 
 _NUMPY_NAMES = {
     "asin": "arcsin", "acos": "arccos", "atan": "arctan", "asinh": "arcsinh", "acosh": "arccosh",
@@ -146,6 +148,16 @@ FLOAT64 = _numpy(np.float64)
 
 LONGDOUBLE = _numpy(np.longdouble)
 """The platform's ``long double``: 64-bit mantissa on x86, no wider than a double on some others."""
+
+
+def numpy_function_names() -> dict[str, str]:
+    """Return what NumPy calls the elementary functions, by their SymPy names; it has no erf and erfc."""
+    return {name: _NUMPY_NAMES.get(name, name) for name in _FUNCTION_NAMES}
+
+
+def written_constant(name: str) -> str:
+    """Return the digits of ``"pi"`` or ``"E"``."""
+    return _NAMED[name]
 
 
 @contextlib.contextmanager

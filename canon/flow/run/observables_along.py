@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import inspect
 import warnings
 from fractions import Fraction
@@ -12,11 +13,13 @@ import numpy.typing as npt
 
 from canon.expression.graph.number_systems import FLOAT64, LONGDOUBLE, multiprecision
 from canon.kernel.program.localised_terms import exponents_of
+from canon.kernel.quad_arithmetic import quad_array, quad_for
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from canon.array import Array
+    from canon.expression.graph.number_systems import Arithmetic
     from canon.flow.run.samples import Samples
     from canon.kernel.llvm.number_types import MachineType
     from canon.kernel.program.hamilton_equations import HamiltonEquations
@@ -38,6 +41,9 @@ _IMPLAUSIBLE = 0.5
 _VANISHING = 1e-6
 """Terms of H that are smaller at the start than this part of their median size on the way are nothing to measure by."""
 
+_NARROWER_THAN_QUAD = ("single", "double", "compensated", "extended", "double-double")
+"""Precisions of states whose functions are evaluated in 113 bits, where long doubles do not do."""
+
 _WIDE = bool(np.finfo(np.longdouble).nmant >= 63)
 
 
@@ -47,21 +53,34 @@ def measured(
     """Return each node's values along a trajectory and their changes since the start.
 
     They are evaluated with a 64-bit mantissa where the states are doubles and the platform's long double has
-    one (x86), with 40 digits otherwise, at the state with what it is beyond doubles: what is reported is
-    the trajectory's error, not the evaluation's.
+    one (x86), in 113 bits where they are wider, and with 40 digits where they have as many or heyoka has no numbers
+    of 113 bits, at the state with what it is beyond doubles: what is reported is the trajectory's error, not the
+    evaluation's.
     """
-    values = _wide_values if _in_long_doubles(precision) else _many_digits
+    values = _values_for(system, nodes, precision)
     found = values(system, nodes, samples.t, samples.y, samples.carried)
     return [(_rounded(value), _rounded(value - value[0])) for value in found]
 
 
 def _rounding_of(precision: str) -> float:
     """Return the part of the size of its terms that :func:`measured` may get a function of the state wrong by."""
-    return 2.0**-60 if _in_long_doubles(precision) else 1e-37
+    if _in_long_doubles(precision):
+        return 2.0**-60
+    return 2.0**-109 if precision in _NARROWER_THAN_QUAD else 1e-37
 
 
 def _in_long_doubles(precision: str) -> bool:
     return _WIDE and precision in ("single", "double", "compensated")
+
+
+def _values_for(
+    system: HamiltonEquations, nodes: Sequence[int], precision: str
+) -> Callable[[HamiltonEquations, Sequence[int], Array, Array, Array], list[npt.NDArray[Any]]]:
+    """Return what evaluates nodes in numbers that are wider than the states."""
+    if _in_long_doubles(precision):
+        return _wide_values
+    quad = quad_for(system.graph, nodes) if precision in _NARROWER_THAN_QUAD else None
+    return _many_digits if quad is None else functools.partial(_quad_values, quad)
 
 
 def values_in(
@@ -80,9 +99,8 @@ def values_in(
         return np.stack([np.broadcast_to(np.asarray(v, dtype=dtype), y.shape[1:]) for v in found])[
             ..., np.newaxis
         ]
-    exactly = np.stack(_many_digits(system, nodes, np.array([t]), y[:, np.newaxis], carried[:, np.newaxis]))[
-        :, 0
-    ]
+    values = _values_for(system, nodes, "double-double")
+    exactly = np.stack(values(system, nodes, np.array([t]), y[:, np.newaxis], carried[:, np.newaxis]))[:, 0]
     high = exactly.astype(np.float64)
     return np.stack([high, (exactly - high).astype(np.float64)], axis=-1)
 
@@ -198,6 +216,15 @@ def _wide_values(
     times = t.astype(np.longdouble).reshape((-1,) + (1,) * (y.ndim - 2))
     found = system.graph.evaluate(nodes, dict(zip(system.inputs, (*state, times), strict=True)), LONGDOUBLE)
     return [np.broadcast_to(np.asarray(value, dtype=np.longdouble), y.shape[1:]) for value in found]
+
+
+def _quad_values(
+    quad: Arithmetic, system: HamiltonEquations, nodes: Sequence[int], t: Array, y: Array, carried: Array
+) -> list[npt.NDArray[Any]]:
+    state = quad_array(y, carried)
+    times = quad_array(t, np.zeros_like(t)).reshape((-1,) + (1,) * (y.ndim - 2))
+    found = system.graph.evaluate(nodes, dict(zip(system.inputs, (*state, times), strict=True)), quad)
+    return [np.broadcast_to(np.asarray(value, dtype=state.dtype), y.shape[1:]) for value in found]
 
 
 def _many_digits(

@@ -1,0 +1,65 @@
+"""Quad precision as an arithmetic of expression graphs: numbers of 113 bits in NumPy arrays, by heyoka."""
+
+from __future__ import annotations
+
+import functools
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from canon.expression.graph.number_systems import Arithmetic, numpy_function_names, written_constant
+from canon.kernel.heyoka_bridge import heyoka_number
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from canon.expression.graph.graph import Graph
+
+__all__ = ["quad_arithmetic", "quad_array", "quad_for"]
+
+_MISSING = ("erf", "erfc")
+"""Functions of graphs that NumPy has not."""
+
+
+@functools.cache
+def quad_arithmetic() -> Arithmetic | None:
+    """Return arithmetic with heyoka's numbers of 113 bits, single or in arrays; None where heyoka has none.
+
+    Some 20 ns an operation, where numbers of 40 digits by mpmath take 3 µs.
+    """
+    import heyoka as hy
+
+    if not hasattr(hy, "real128"):
+        return None
+    number = functools.lru_cache(maxsize=4096)(heyoka_number("quad"))
+    return Arithmetic(
+        name="113 bits",
+        digits=34,
+        number=number,
+        named=lambda name: hy.real128(written_constant(name)),
+        root=np.sqrt,
+        functions={
+            name: getattr(np, numpy) for name, numpy in numpy_function_names().items() if name not in _MISSING
+        },
+    )
+
+
+def quad_for(graph: Graph, nodes: Sequence[int]) -> Arithmetic | None:
+    """Return that arithmetic where all functions in some nodes are known to it."""
+    found = quad_arithmetic()
+    if found is None or any(graph.nodes[node].kind in _MISSING for node in graph.reachable(nodes)):
+        return None
+    return found
+
+
+def quad_array(high: Any, low: Any) -> Any:
+    """Return sums of two doubles in 113 bits, as an array.
+
+    Examples
+    --------
+    >>> print(quad_array(np.array([0.1]), np.array([2.0**-110]))[0] - 0.1)
+    7.70371977754894341222391177033970933e-34
+    """
+    import heyoka as hy
+
+    return high.astype(hy.real128) + low.astype(hy.real128)
