@@ -179,3 +179,43 @@ def test_a_name_may_stand_before_a_column():
     field = {"kind": "lie-bracket", "x": ["x", "y"], "X": ["y", "0"], "Y": ["0", "x"]}
     assert judged(field, claim=r"Z = \begin{pmatrix} -x \\ y \end{pmatrix}").status == "holds"
     assert judged(field, claim=r"Z = \begin{pmatrix} x \\ y \end{pmatrix}").status == "fails"
+
+
+SPRING = {"parameters": {"m": "positive", "k": "positive", "a": "real"}, "q": ["x"]}
+HAMILTON = {**SPRING, "kind": "hamilton-equations", "p": ["p"], "H": "p²/2m + kx²/2", "q_dot": "p/m"}
+LAGRANGE = {**SPRING, "kind": "euler-lagrange", "L": "mẋ²/2 - kx²/2"}
+FORCE = {**SPRING, "kind": "generalized-force", "V": "ax²"}
+
+
+@pytest.mark.parametrize(
+    ("question", "right", "wrong"),
+    [
+        (HAMILTON, {"p_dot": "ṗ = -∂H/∂x = -kx"}, {"p_dot": "ṗ = ∂H/∂x = -kx"}),
+        (HAMILTON, {"p_dot": "-∂H/∂x = -kx"}, {"p_dot": "∂H/∂x = -kx"}),
+        (
+            HAMILTON,
+            {"p_dot": r"$\dot p = -\frac{\partial H}{\partial x} = -kx$"},
+            {"p_dot": r"$\dot p = -\frac{\partial H}{\partial p} = -kx$"},
+        ),
+        (HAMILTON, {"p_dot": "{p, H} = -kx"}, {"p_dot": "{x, H} = -kx"}),
+        (LAGRANGE, {"claim": ["mẍ = ∂L/∂x = -kx"]}, {"claim": ["mẍ = -∂L/∂x = -kx"]}),
+        (LAGRANGE, {"claim": ["mẍ = ∂L/∂x = -kx"]}, {"claim": ["mẍ = ∂L/∂ẋ = -kx"]}),
+        (LAGRANGE, {"claim": ["∂L/∂x = -kx = mẍ"]}, {"claim": ["∂L/∂ẋ = -kx = mẍ"]}),
+        (LAGRANGE, {"claim": ["d/dt(∂L/∂ẋ) = -kx = mẍ"]}, {"claim": ["d/dt(∂L/∂ẋ) = kx = mẍ"]}),
+        (
+            LAGRANGE,
+            {"claim": ["d/dt(∂L/∂ẋ) - ∂L/∂x = mẍ + kx = 0"]},
+            {"claim": ["d/dt(∂L/∂ẋ) + ∂L/∂x = mẍ + kx = 0"]},
+        ),
+        (FORCE, {"Q": ["Q_x = -∂V/∂x = -2ax"]}, {"Q": ["Q_x = ∂V/∂x = -2ax"]}),
+    ],
+)
+def test_where_a_formula_comes_from_is_worked_out(question, right, wrong):
+    assert judged(question, **right).status == "holds"
+    assert judged(question, **wrong).status == "fails"
+
+
+def test_what_is_made_of_functions_that_nobody_gave_is_passed_over():
+    found = judged({**FORCE, "V": "ax²"}, Q=["Q_x = -∂U/∂x = -2ax"])
+    assert found.status == "holds"
+    assert any("is passed over" in line for line in found.warnings)

@@ -25,6 +25,7 @@ from canon.exercise.sheet.left_sides import (
     label_of,
 )
 from canon.exercise.sheet.matrix_products import components_of_products, equations_of_products
+from canon.exercise.sheet.quantities.given_functions import GivenFunctions, key_at
 from canon.exercise.sheet.typed_values import both_signs, typed_values
 from canon.exercise.sheet.vector_equations import vector_equations
 from canon.expression.parse import LanguageError, parse_expression, statements_of
@@ -230,14 +231,26 @@ class _Plain:
         for side in sides[:-1]:
             if self.is_asked(side, asked):
                 continue
-            if is_definition(side.said, asked.shown, self.scope):
-                self.passed(place, side)
+            if self.is_origin(place, side, asked.shown):
+                self.found.links += [(place, made) for made in self.origin(place, side, sides[-1])]
             else:
                 self.read(place, text, side, asked)
                 readable.append(side)
         readable.append(sides[-1])
         self.found.links += [(place, field_texts.equation_between(a, b)) for a, b in pairwise(readable)]
         return sides[-1].text
+
+    def is_origin(self, place: str, side: Side, asked: str) -> bool:
+        """Tell whether a side says where a formula comes from: of functions, given or not."""
+        given = GivenFunctions(self.of.keys, key_at(place), self.scope)
+        return is_definition(side.said, asked, self.scope) or given.worked_out(side.said) is not None
+
+    def origin(self, place: str, side: Side, near: Side) -> list[str]:
+        """Return the equation of an origin with a side near it; one of what is not given is passed over."""
+        found = GivenFunctions(self.of.keys, key_at(place), self.scope).equations(side, near)
+        if found is None:
+            self.passed(place, side)
+        return found or []
 
     def passed(self, place: str, side: Side) -> None:
         """Note a definition that nothing can be asked of."""
@@ -371,7 +384,7 @@ class _Plain:
     def chain(self, place: str, text: str, statement: Statement) -> list[str]:
         """Return the equations that a chain says, definitions in it passed over."""
         sides = statement.sides
-        rest = tuple(side for side in sides if not is_definition(side.said, "claim", self.scope))
+        rest = [side for side in sides if not self.is_origin(place, side, "claim")]
         if len(rest) == len(sides):
             links = [field_texts.equation_between(a, b) for a, b in pairwise(sides)]
             return links or [sides[0].text]
@@ -379,12 +392,13 @@ class _Plain:
         if len(rest) < 2 and not whole:
             reason = "this is Lagrange's equation itself, true of every system"
             raise self.told(place, text, sides[0], reason, "write out what it is for this one")
-        for side in sides:
+        made: list[str] = []
+        for side, beside in zip(sides, (*sides[1:], sides[-2]), strict=True):
             if side not in rest:
-                self.passed(place, side)
-        if len(rest) == 1:
-            return [rest[0].text]
-        return [field_texts.equation_between(a, b) for a, b in pairwise(rest)]
+                made += self.origin(place, side, beside if beside in rest else rest[0])
+        if whole:  # d/dt(∂L/∂q̇) − ∂L/∂q is what stands there, and that is zero
+            return [*made, rest[0].text]
+        return [*made, *(field_texts.equation_between(a, b) for a, b in pairwise(rest))]
 
     def statements(self, place: str, text: str) -> tuple[Statement, ...]:
         """Return the statements of a text."""

@@ -144,12 +144,27 @@ class SplittingWriter:
 
     def kick(self, coefficient: str) -> None:
         """Write p ← p − coefficient · ∂H/∂q."""
-        if self.kick_first:
+        if self.kick_first and self.w.number.lanes == 1:
             self.keep_force()
             self.kick_again(coefficient)
         else:
-            self._evaluate_force(self._moving(self.n + self.gap, coefficient))
+            self._evaluate_force(self._kicking(coefficient))
         self._advance(self.kick_clock, coefficient)
+
+    def _kicking(self, coefficient: str) -> _Take:
+        """Return what kicks by a rate at once, and keeps it where it is used again.
+
+        One orbit has its force kept first: writing to two arrays in one loop takes a chain of 512 a quarter longer.
+        """
+        moving = self._moving(self.n + self.gap, coefficient)
+        if not self.kick_first:
+            return moving
+
+        def keeping(i: str, rate: str) -> None:
+            self.w.store(rate, self.force, i)
+            moving(i, rate)
+
+        return keeping
 
     def kick_again(self, coefficient: str) -> None:
         """Write a kick with the force that was kept."""

@@ -1,0 +1,137 @@
+r"""Sides of chains that are made of functions the claim gives: ``-∂H/∂x``, ``d/dt(∂L/∂θ̇) - ∂L/∂θ``, ``{x, H}``.
+
+People write where a formula comes from. What is made of H, L, V … of the same claim is worked out and compared with its
+neighbours in the chain, so that a wrong sign in it is seen; what is made of functions that nobody gave can't be.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import sympy as sp
+
+from canon.expression.parse import LanguageError, parse_expression
+from canon.expression.symbols.symbol import time_derivative
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from sympy import Expr, Symbol
+
+    from canon.expression.text.scope import Scope
+    from canon.expression.text.statement import Side
+
+__all__ = ["GivenFunctions", "key_at"]
+
+_LONGEST = 200
+"""Characters of a side that is looked at."""
+_TERM = re.compile(
+    r"(?P<sign>[-+]?)(?:"
+    r"(?P<rate>\(?d/dt\)?)?(?P<open>\(?)∂(?P<of>[A-Z])/∂(?P<by>[^-+=∂(){}\[\]/*]{1,20})(?P<close>\)?)"
+    r"|\{(?P<first>[^{},=]{1,20}),(?P<second>[A-Z])\})"
+)
+
+
+def key_at(place: str) -> str:
+    """Return the key of a place in a claim.
+
+    Examples
+    --------
+    >>> key_at("p_dot[0]"), key_at("map.Q[1]")
+    ('p_dot', 'map')
+    """
+    return re.split(r"[.\[]", place)[0]
+
+
+@dataclass(frozen=True)
+class GivenFunctions:
+    """The functions that a claim gives.
+
+    Parameters
+    ----------
+    keys
+        The claim.
+    asked
+        The key that a side stands under: what is asked gives nothing.
+    scope
+        The declared names.
+
+    Examples
+    --------
+    >>> from canon import coordinates
+    >>> from canon.expression import Scope
+    >>> x = coordinates("x")
+    >>> given = GivenFunctions({"H": "p**2/2 + x**3"}, "p_dot", Scope({"x": x, "p": x.momentum}))
+    >>> given.worked_out("-∂H/∂x"), given.worked_out("∂F/∂x")
+    (-3*x**2, None)
+    """
+
+    keys: Mapping[str, Any]
+    asked: str
+    scope: Scope
+
+    def equations(self, side: Side, near: Side) -> list[str] | None:
+        """Return the equation of a side with another one, none where it is an identity; None where it is not given."""
+        made = self.worked_out(side.said)
+        if made is None:
+            return None
+        try:
+            right = parse_expression(near.text, self.scope)
+        except LanguageError:
+            return []  # it is told where the side itself is read
+        return [] if sp.expand(made - right) == 0 else [f"{made} = {right}"]
+
+    def worked_out(self, said: str) -> Expr | None:
+        """Return a side, in plain spelling without blanks, in the declared names; None where it is made of others."""
+        said, total, place = said.replace("−", "-"), sp.S.Zero, 0
+        if not said or len(said) > _LONGEST:
+            return None
+        while place < len(said):
+            term = _TERM.match(said, place)
+            if (
+                term is None
+                or (place and not term["sign"])
+                or (term["of"] and bool(term["open"]) != bool(term["close"]))
+            ):
+                return None
+            try:
+                value = self._value(term)
+            except LanguageError:
+                return None
+            if value is None:
+                return None
+            total += -value if term["sign"] == "-" else value
+            place = term.end()
+        return total
+
+    def _value(self, term: re.Match[str]) -> Expr | None:
+        letter = term["of"] or term["second"]
+        text = self.keys.get(letter)
+        if letter == self.asked or not isinstance(text, str) or self.scope.declares(letter):
+            return None
+        function = parse_expression(text, self.scope)
+        if term["second"]:
+            return self._bracket(parse_expression(term["first"], self.scope), function)
+        symbol = parse_expression(term["by"], self.scope)
+        if not isinstance(symbol, sp.Symbol):
+            return None
+        slope = function.diff(symbol)
+        return time_derivative(slope, self._symbols("q") or [], self.scope.time) if term["rate"] else slope
+
+    def _bracket(self, f: Expr, g: Expr) -> Expr | None:
+        """Return Poisson's bracket in the claim's coordinates and momenta."""
+        q, p = self._symbols("q"), self._symbols("p")
+        if q is None or p is None or len(q) != len(p):
+            return None
+        return sp.Add(*(f.diff(x) * g.diff(y) - f.diff(y) * g.diff(x) for x, y in zip(q, p, strict=True)))
+
+    def _symbols(self, key: str) -> list[Symbol] | None:
+        """Return the symbols that a key lists; None where it lists none, as for coordinates in terms of others."""
+        names = self.keys.get(key)
+        if not isinstance(names, list):
+            return None
+        found = [parse_expression(name, self.scope) for name in names]
+        symbols = [s for s in found if isinstance(s, sp.Symbol)]
+        return symbols if len(symbols) == len(found) else None
