@@ -165,9 +165,22 @@ def _values(reading: Reading, key: str, asked: Measure | None) -> list[Expr | No
             reading.fault(
                 place, f"{reading.units[place]} is no unit of what is asked in {reading.word('unit')}"
             )
+        elif unit.powers != asked.powers:
+            found.append(None)
         else:
-            found.append(f * unit.factor / asked.factor if unit.powers == asked.powers else None)
+            found.append(f * _factor(reading, place, unit, asked))
     return found
+
+
+def _factor(reading: Reading, place: str, unit: Measure, asked: Measure) -> Expr:
+    factor = unit.as_(asked)
+    if factor is None:
+        given, wanted = reading.units[place], reading.word("unit")
+        reading.fault(
+            place,
+            f"{given} where {wanted} is asked for: 1 Hz is one cycle a second, of 2π rad; write it in {wanted}",
+        )
+    return factor
 
 
 def _given(reading: Reading) -> dict[str, Expr]:

@@ -37,6 +37,25 @@ _ANGLES = (
     "ph",
 )
 """Letters that are angles wherever a function is taken of them alone."""
+_WAVES = (
+    "k",
+    "n",
+    "m",
+    "l",
+    "j",
+    "i",
+    "N",
+    "omega",
+    "Omega",
+    "nu",
+    "kappa",
+    "lambda",
+    "lamda",
+    "mu",
+    "w",
+    "s",
+)
+"""Letters that count waves or turns: arguments begin with them."""
 
 
 @dataclass(frozen=True)
@@ -92,7 +111,17 @@ class ArgumentEnd:
         if any(map(self.moves, taken)) or self.is_angle(taken[-1]) or item.column in self.spaced:
             return False
         base = item.base if isinstance(item, Powered) else item
-        return isinstance(base, Name) and not isinstance(self.scope.symbol(base.text), Rate)
+        if not isinstance(base, Name) or isinstance(self.scope.symbol(base.text), Rate):
+            return False
+        last = taken[-1]
+        run_together = isinstance(last, Name) and last.column + len(last.text) == base.column
+        timed = self.scope.symbol(base.text) == self.scope.time
+        return run_together or timed or self.is_angle(base) or self.is_number_of_waves(last)
+
+    def is_number_of_waves(self, node: Node) -> bool:
+        """Whether a factor is what people multiply an argument by: a number, k, n, ω."""
+        names = [name.text for name in names_in(node) if name.text != "pi"]
+        return all(name.partition("_")[0].rstrip("0123456789") in _WAVES for name in names)
 
     def _moves(self, name: str) -> bool:
         symbol = self.scope.symbol(name)

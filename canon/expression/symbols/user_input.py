@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Set
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
@@ -89,6 +90,8 @@ def given_symbols(x: Any, name: str = "") -> tuple[Symbol, ...]:
         ...
     TypeError: x should be symbols, as coordinates('q') or parameters('m') make them, not q**2
     """
+    if isinstance(x, Set):
+        raise TypeError(f"{name or 'the variables'}: a set has no order; give a list")
     several: tuple[Any, ...] = (
         (x,) if isinstance(x, sp.Basic | str) or not hasattr(x, "__iter__") else tuple(x)
     )

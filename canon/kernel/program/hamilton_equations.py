@@ -255,6 +255,8 @@ def exact_number(value: Any, what: str) -> Fraction:
             return Fraction(value)
         if hasattr(value, "man_exp"):  # mpmath's, which are binary numbers too
             return _binary_number(value)
+        if not hasattr(value, "as_integer_ratio") and getattr(value, "ndim", None) == 0:
+            return exact_number(value.item(), what)  # NumPy's whole numbers, and arrays of one number
         return Fraction(*value.as_integer_ratio())
     except (ValueError, OverflowError, AttributeError):
         raise ValueError(f"{what} = {value!r} is no finite real number") from None

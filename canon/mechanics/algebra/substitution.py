@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import reprlib
+from collections.abc import Mapping, Set
 from typing import TYPE_CHECKING, Any, cast
 
 import sympy as sp
@@ -11,7 +13,7 @@ from sympy import Expr
 from canon.expression.symbols.user_input import given_expression
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
 __all__ = [
     "MOST_TERMS",
@@ -71,6 +73,12 @@ def as_tuple(given: Sequence[Expr] | sp.MatrixBase | Expr) -> tuple[Expr, ...]:
         )
     if isinstance(given, Expr):
         return (given,)
+    if isinstance(given, Mapping | Set):
+        kind = "keys of a dictionary" if isinstance(given, Mapping) else "members of a set"
+        raise TypeError(
+            f"{reprlib.repr(given)}: {kind} have no order that says which is whose; give a list, in the order of the "
+            "coordinates"
+        )
     if not hasattr(given, "__iter__") or isinstance(given, str):
         return (given_expression(given),)
     return tuple(given_expression(f) for f in given)

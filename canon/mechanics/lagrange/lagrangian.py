@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from sympy import Expr, Symbol
@@ -21,6 +22,20 @@ if TYPE_CHECKING:
 __all__ = ["Lagrangian"]
 
 
+def _forces(given: Any, q: Sequence[Symbol]) -> tuple[Any, ...]:
+    """Return the generalized forces, in the order of the coordinates where they are given by coordinate."""
+    if given is None:
+        return ()
+    if not isinstance(given, Mapping):
+        return as_tuple(given)
+    forces: dict[Any, Any] = {coordinate_symbols([key])[0]: force for key, force in given.items()}
+    if others := [str(key) for key in forces if key not in q]:
+        raise ValueError(
+            f"forces are given for {', '.join(others)}; the coordinates are {', '.join(map(str, q))}"
+        )
+    return tuple(forces.get(s, sp.S.Zero) for s in q)
+
+
 @dataclass(frozen=True)
 class Lagrangian:
     """A Lagrangian L(q, q̇, t) and the generalized forces that have no potential.
@@ -35,7 +50,7 @@ class Lagrangian:
     q
         The generalized coordinates, independent of one another.
     forces
-        The generalized forces Q(q, q̇, t), one a coordinate, or nothing.
+        The generalized forces Q(q, q̇, t), one a coordinate; or by coordinate, ``{x: -c*x.dot}``; or nothing.
     t
         The time.
     dissipation
@@ -75,7 +90,7 @@ class Lagrangian:
         self,
         L: Expr,
         q: Sequence[Expr] | Expr,
-        forces: Sequence[Expr] | Expr | None = None,
+        forces: Sequence[Expr] | Mapping[Symbol, Expr] | Expr | None = None,
         t: Symbol = time,
         *,
         dissipation: Expr | None = None,
@@ -85,7 +100,7 @@ class Lagrangian:
             raise ValueError("no coordinates given; a system moves in at least one")
         if len({*symbols}) < len(symbols):
             raise ValueError(f"the coordinates {symbols} are not all different; every one moves on its own")
-        given = () if forces is None else as_tuple(forces)
+        given = _forces(forces, symbols)
         expressions = [plain(e, symbols, t) for e in (L, *given)]
         object.__setattr__(self, "L", expressions[0])
         object.__setattr__(self, "q", symbols)

@@ -6,7 +6,7 @@ Factors are those of the SI brochure (9th edition, 2019): prefixes are powers of
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import zip_longest
 from typing import TYPE_CHECKING
 
@@ -39,6 +39,7 @@ _PLAIN: Mapping[str, tuple[Expr, tuple[int, ...]]] = {
     "rev": (2 * sp.pi, ()), "rpm": (sp.pi / 30, (0, 0, -1)), "t": (Rational(1000), (0, 1)),
     "au": (Rational(149597870700), (1,)),
 }  # fmt: skip
+_COUNTS = {"cycles": ("Hz",), "turns": ("rev", "rpm"), "angles": ("rad", "deg", "°")}
 _MOST = 80
 """Characters of a unit."""
 _LONGEST = 2_000
@@ -75,6 +76,24 @@ class Measure:
 
     factor: Expr
     powers: tuple[int, ...]
+    counts: str = field(default="", compare=False)
+    """What a frequency counts: ``"cycles"`` in Hz, ``"turns"`` in rpm and rev/s, ``"angles"`` in rad/s and deg/s."""
+
+    def as_(self, asked: Measure) -> Expr | None:
+        """Return the factor to a unit of the same powers; None between hertz and an angle by the second.
+
+        One hertz is one cycle a second, or one turn; whether a cycle is 2π rad there, only who asks can say.
+
+        Examples
+        --------
+        >>> measure_of("rpm").as_(measure_of("Hz")), measure_of("Hz").as_(measure_of("rad/s"))
+        (1/60, None)
+        """
+        both = {self.counts, asked.counts}
+        if both == {"cycles", "angles"}:
+            return None
+        turn = 2 * sp.pi if both == {"cycles", "turns"} else sp.S.One
+        return self.factor / asked.factor * (turn if self.counts == "cycles" else 1 / turn)
 
 
 def measure_of(unit: str) -> Measure | None:
@@ -97,7 +116,9 @@ def measure_of(unit: str) -> Measure | None:
             return None
         factor *= one[0] ** power
         powers = [p + power * own for p, own in zip_longest(powers, one[1], fillvalue=0)]
-    return Measure(factor, tuple(powers))
+    names = {name for name, _ in named}
+    counts = [what for what, units in _COUNTS.items() if any(name.endswith(units) for name in names)]
+    return Measure(factor, tuple(powers), counts[0] if counts else "")
 
 
 def _without_latex(unit: str) -> str:
