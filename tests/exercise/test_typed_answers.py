@@ -184,6 +184,7 @@ def test_a_name_may_stand_before_a_column():
 SPRING = {"parameters": {"m": "positive", "k": "positive", "a": "real"}, "q": ["x"]}
 HAMILTON = {**SPRING, "kind": "hamilton-equations", "p": ["p"], "H": "p²/2m + kx²/2", "q_dot": "p/m"}
 LAGRANGE = {**SPRING, "kind": "euler-lagrange", "L": "mẋ²/2 - kx²/2"}
+DAMPED = {**LAGRANGE, "kind": "dissipative", "F": "aẋ²/2"}
 FORCE = {**SPRING, "kind": "generalized-force", "V": "ax²"}
 
 
@@ -207,6 +208,13 @@ FORCE = {**SPRING, "kind": "generalized-force", "V": "ax²"}
             {"claim": ["d/dt(∂L/∂ẋ) - ∂L/∂x = mẍ + kx = 0"]},
             {"claim": ["d/dt(∂L/∂ẋ) + ∂L/∂x = mẍ + kx = 0"]},
         ),
+        (
+            DAMPED,
+            {"claim": ["d/dt(∂L/∂ẋ) - ∂L/∂x + ∂F/∂ẋ = mẍ + aẋ + kx = 0"]},
+            {"claim": ["d/dt(∂L/∂ẋ) - ∂L/∂x - ∂F/∂ẋ = mẍ + aẋ + kx = 0"]},
+        ),
+        (DAMPED, {"claim": ["mẍ + kx = -∂F/∂ẋ = -aẋ"]}, {"claim": ["mẍ + kx = ∂F/∂ẋ = -aẋ"]}),
+        (DAMPED, {"claim": ["d/dt(∂L/∂ẋ) - ∂L/∂x = -aẋ"]}, {"claim": ["d/dt(∂L/∂ẋ) - ∂L/∂x = aẋ"]}),
         (FORCE, {"Q": ["Q_x = -∂V/∂x = -2ax"]}, {"Q": ["Q_x = ∂V/∂x = -2ax"]}),
     ],
 )

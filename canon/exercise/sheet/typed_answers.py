@@ -396,8 +396,8 @@ class _Plain:
         for side, beside in zip(sides, (*sides[1:], sides[-2]), strict=True):
             if side not in rest:
                 made += self.origin(place, side, beside if beside in rest else rest[0])
-        if whole:  # d/dt(∂L/∂q̇) − ∂L/∂q is what stands there, and that is zero
-            return [*made, rest[0].text]
+        if whole:  # d/dt(∂L/∂q̇) − ∂L/∂q is what stands there, and zero; or it equals the forces
+            return made or [rest[0].text]
         return [*made, *(field_texts.equation_between(a, b) for a, b in pairwise(rest))]
 
     def statements(self, place: str, text: str) -> tuple[Statement, ...]:
