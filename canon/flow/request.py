@@ -22,7 +22,8 @@ __all__ = ["Request", "refuse_unknown"]
 # What other libraries call the arguments of a run, and what is given here.
 _ELSEWHERE = {
     "t_eval": "times=[…] keeps the states at these times",
-    "args": "parameters={symbol or name: number} gives the numbers",
+    "args": "parameters={symbol or name: number} gives the numbers of a system; those of a function go into it, "
+    "lambda t, y: f(t, y, 0.3)",
     "rtol": "tolerance= is the relative tolerance of an adaptive method",
     "atol": "there is no absolute tolerance; tolerance= is the relative one of an adaptive method",
     "dense_output": "dense=True keeps the polynomials, and motion(t) evaluates them",

@@ -84,6 +84,12 @@ def _check_events(events: Any) -> None:
     )
 
 
+def _check_parameters(given: Any) -> None:
+    if given is not None and not isinstance(given, Mapping):
+        said = reprlib.repr(given)
+        raise TypeError(f"parameters={said}: give numbers by name, parameters={{'m': 1.0, 'k': 2.0}}")
+
+
 def any_task(request: Request) -> tuple[Task, MovingSystem | None]:
     """Return the task of a request, and what its system is where it is no Hamiltonian.
 
@@ -93,6 +99,7 @@ def any_task(request: Request) -> tuple[Task, MovingSystem | None]:
         As :func:`canon.flow.propagation.propagate` documents them.
     """
     _check_events(request.events)
+    _check_parameters(request.parameters)
     scene = is_scene(request.system)
     if is_rates_function(request.system):
         begin, _ = two_ends(request.t_span, request.y0)

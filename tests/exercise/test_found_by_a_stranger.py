@@ -104,3 +104,14 @@ def test_numbers_of_numpy_are_numbers(mass: object) -> None:
     assert abs(found["x"][-1] - np.cos(3.0)) < 1e-13
     with pytest.raises(ValueError, match="is no finite real number"):
         propagate(L, (0, 3), [1, 0], parameters={m: np.bool_(1)})
+
+
+def test_starts_and_parameters_of_the_wrong_kind_are_told() -> None:
+    with pytest.raises(ValueError, match=r"give the start as a list, y0 = \[1\]"):
+        propagate(lambda t, z: -z, (0, 1), 1)
+    L = Lagrangian(x.dot**2 / 2 - x**2, [x])
+    for system in (L, lambda t, z: -z):
+        with pytest.raises(TypeError, match="give numbers by name"):
+            propagate(system, (0, 1), [1, 0], parameters=[1, 1])
+    with pytest.raises(TypeError, match="those of a function go into it"):
+        propagate(lambda t, z: -z, (0, 1), [1], args=(0.3,))

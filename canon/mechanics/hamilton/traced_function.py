@@ -100,6 +100,10 @@ def read_at_start(f: Callable[[Any, Any], Any], t0: float, y0: Any) -> VectorFie
     if y0 is None or isinstance(y0, Mapping | str):
         raise ValueError("the start of a function f(t, y) is given as numbers in order: y0 = [1.0, 0.0]")
     numbers = _real_numbers(y0, "the start of a function f(t, y)")
+    if not numbers.ndim:
+        raise ValueError(
+            f"y0 = {y0} is one number: give the start as a list, y0 = [{y0}], and f returns as many"
+        )
     field = field_of_function(f, len(numbers))
     start = numbers.reshape(len(numbers), -1)[:, 0]
     returned = np.ravel(_real_numbers(f(t0, start.copy()), "what f(t, y) returns at the start"))
