@@ -1,6 +1,7 @@
 """docs/sheets_kinds.md, sheets_perturbation.md: every example is judged, and what is said to be refused is refused."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -26,6 +27,8 @@ BLOCKS = re.findall(r"^```toml\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)
 
 def test_what_the_page_says_is_what_canon_says():
     claims = [claim for block in BLOCKS for claim in sheet_from(block.encode(), toml=True).claims]
+    # Two judge at a time beside other tests: what is wrong is looked for as long as on a machine of one's own.
+    claims = [replace(claim, budget=3 * claim.budget) for claim in claims]
     told = list(judged(claims, jobs=2))
     assert [(t.status, t.feedback, t.id) for t in told] == SAID
 
