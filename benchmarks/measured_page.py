@@ -269,6 +269,24 @@ SECTIONS = {
             ),
         ),
     ),
+    "preparation": Section(
+        "A further motion of a system is prepared in a few milliseconds; code that was compiled once is loaded, and "
+        "energies of motions in double-double are evaluated in 113 bits.",
+        (
+            Table(
+                ("motion", "method", "whole call, ms", "its steps", "beside them"),
+                r"^(\S.*?periods) +(\S+) +([\d.]+) +([\d.]+) +([\d.]+)$",
+            ),
+            Table(
+                ("loop", "method", "numbers", "compiled, ms", "loaded, ms"),
+                r"^(\S+) +(\S+) +(double|compensated|double-double) +([\d.]+) +([\d.]+)$",
+            ),
+            Table(
+                ("double-double", "steps, ms", "with energies in 113 bits", "in 40 digits"),
+                r"^([A-Za-z]+) +([\d.]+) +([\d.]+) +([\d.]+)$",
+            ),
+        ),
+    ),
     "brouwer": Section(
         "Over the whole run the energy error grows as the root of the number of steps: Brouwer's "
         "law, the least that rounding allows.",

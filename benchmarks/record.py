@@ -33,6 +33,7 @@ BENCHMARKS = {
     "sections": "Poincaré sections of ensembles",
     "kernels": "Compiled loops, beside a C program",
     "roofline": "Compiled loops, beside what the processor can do",
+    "preparation": "What a motion costs beside its steps",
     "constraints": "Constraints kept by RATTLE, beside a C program",
     "rotations": "Rotating bodies and charges, by methods of their own",
     "brouwer": "Energy error over 10⁸ steps: Brouwer's law",

@@ -2,9 +2,9 @@
 
 What it can do is measured by loops that canon's own compiler makes: chains of one kind of instruction, side by side, so
 that none waits for another, in each width of SIMD register. What a loop asks of it is counted, not estimated: its
-optimised code is run once with a counter in every basic block. An instruction on more numbers than a register holds
+optimized code is run once with a counter in every basic block. An instruction on more numbers than a register holds
 counts as several. The bound is the longest time that one kind of unit is busy, and a loop's share of the limit is the
-bound over its time: 100 % were a loop that keeps that unit busy without a pause.
+bound over its time: 100 % would be a loop that keeps that unit busy without a pause.
 
 - *arithmetic*: products and fused multiply-adds on their units, sums on theirs, or both where that takes longer;
 - *quotients*: divisions and square roots, which share one slow unit;
@@ -117,7 +117,7 @@ def _chains(kind: str, width: int) -> str:
 
 
 def _chain_of(kind: str, of: str, suffix: str) -> list[list[str]]:
-    """Return what one step of a chain is, or of two chains of which every other is."""
+    """Return what one step of a chain is; where kinds are mixed, of the first chains and of the others."""
     same = f"{{after}} = select i1 true, {of} {{before}}, {of} {{before}}"
     product = f"{{after}} = call {of} @llvm.fma.{suffix}({of} {{before}}, {of} %a, {of} %a)"
     total = f"{{after}} = fadd {of} {{before}}, %a"
@@ -280,7 +280,7 @@ class Row:
     steps: int
 
     def run(self, steps: int) -> Any:
-        """Take steps, and keep the last state only."""
+        """Return what takes so many steps and keeps the last state only."""
         system, start, step = self.system()
         y0 = np.tile(start[:, np.newaxis], self.orbits) if self.orbits > 1 else start
         return lambda: propagate(

@@ -31,7 +31,7 @@ from canon.kernel.llvm.number_types import double_pair
 from canon.kernel.program.hamilton_equations import HamiltonEquations, equations, exact_number, exact_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
     import numpy.typing as npt
     from sympy import Expr
@@ -300,10 +300,8 @@ def _rates_at_start(
             "a constant or a parameter of H is beyond 1e308: choose other units; exponents with floats, which SymPy "
             "takes apart, exp(a + b*t) = exp(a)*exp(b*t), keep together with exact numbers, Rational(1, 1000)"
         ) from large
-    finite = np.array([_is_finite_everywhere(found)])
-    if not finite.all() and states.shape[1] > 1:
+    if not all(bool(np.isfinite(x).all()) for x in found):
         finite = np.logical_and.reduce([np.isfinite(np.broadcast_to(x, states.shape[1:])) for x in found])
-    if not finite.all():
         wrong = states[system.rows, np.argmin(finite)]
         raise ValueError(
             f"H or its derivatives are not finite at y0 = {wrong}: start inside H's domain, in units "
@@ -311,10 +309,6 @@ def _rates_at_start(
         )
     with np.errstate(over="ignore"):  # wider numbers may be beyond doubles, which nobody looks at then
         return np.array([np.ravel(rate)[0] for rate in found[1:]], dtype=np.float64)
-
-
-def _is_finite_everywhere(values: Sequence[Any]) -> bool:
-    return all(bool(np.isfinite(value).all()) for value in values)
 
 
 def _check_transformed(method: TimeTransformed, step: float | None, cadence: int | None) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from canon.expression.graph.number_systems import Arithmetic, numpy_function_names, written_constant
+from canon.expression.graph.number_systems import NOT_IN_NUMPY, Arithmetic, numpy_functions, written_constant
 from canon.kernel.heyoka_bridge import heyoka_number
 
 if TYPE_CHECKING:
@@ -17,15 +17,12 @@ if TYPE_CHECKING:
 
 __all__ = ["quad_arithmetic", "quad_array", "quad_for"]
 
-_MISSING = ("erf", "erfc")
-"""Functions of graphs that NumPy has not."""
-
 
 @functools.cache
 def quad_arithmetic() -> Arithmetic | None:
     """Return arithmetic with heyoka's numbers of 113 bits, single or in arrays; None where heyoka has none.
 
-    Some 20 ns an operation, where numbers of 40 digits by mpmath take 3 µs.
+    An energy takes a small part of what it takes by mpmath in 40 digits (``benchmarks/preparation.py``).
     """
     import heyoka as hy
 
@@ -38,16 +35,14 @@ def quad_arithmetic() -> Arithmetic | None:
         number=number,
         named=lambda name: hy.real128(written_constant(name)),
         root=np.sqrt,
-        functions={
-            name: getattr(np, numpy) for name, numpy in numpy_function_names().items() if name not in _MISSING
-        },
+        functions=numpy_functions(),
     )
 
 
 def quad_for(graph: Graph, nodes: Sequence[int]) -> Arithmetic | None:
     """Return that arithmetic where all functions in some nodes are known to it."""
     found = quad_arithmetic()
-    if found is None or any(graph.nodes[node].kind in _MISSING for node in graph.reachable(nodes)):
+    if found is None or any(graph.nodes[node].kind in NOT_IN_NUMPY for node in graph.reachable(nodes)):
         return None
     return found
 

@@ -43,6 +43,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     folder_of_code.cache_clear()
     found = folder_of_code()
     assert found is not None
+    assert found.parents[1] == tmp_path.resolve()
     yield found
     folder_of_code.cache_clear()
 
@@ -92,6 +93,13 @@ def test_a_folder_that_others_write_to_is_not_trusted(folder: Path, mode: int) -
     folder_of_code.cache_clear()
     assert folder_of_code() is None
     assert kept_or_made("a", lambda: b"made anew") == b"made anew"
+
+
+@pytest.mark.parametrize(("mode", "safe"), [(0o770, False), (0o777, False), (0o1777, True), (0o755, True)])
+def test_nor_is_one_that_others_may_exchange(folder: Path, mode: int, safe: bool) -> None:
+    folder.parent.chmod(mode)
+    folder_of_code.cache_clear()
+    assert folder_of_code() == (folder if safe else None)
 
 
 def test_nothing_is_kept_where_there_is_no_room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -173,7 +173,7 @@ def _values(reading: Reading, key: str, asked: Measure | None) -> list[Expr | No
 
 
 def _factor(reading: Reading, place: str, unit: Measure, asked: Measure) -> Expr:
-    factor = unit.as_(asked)
+    factor = unit.factor_to(asked)
     if factor is None:
         given, wanted = reading.units[place], reading.word("unit")
         reading.fault(

@@ -242,15 +242,20 @@ class _Plain:
 
     def is_origin(self, place: str, side: Side, asked: str) -> bool:
         """Tell whether a side says where a formula comes from: of functions, given or not."""
-        given = GivenFunctions(self.of.keys, key_at(place), self.scope)
-        return is_definition(side.said, asked, self.scope) or given.worked_out(side.said) is not None
+        return (
+            is_definition(side.said, asked, self.scope) or self.given(place).worked_out(side.said) is not None
+        )
 
     def origin(self, place: str, side: Side, near: Side) -> list[str]:
         """Return the equation of an origin with a side near it; one of what is not given is passed over."""
-        found = GivenFunctions(self.of.keys, key_at(place), self.scope).equations(side, near)
+        found = self.given(place).equations(side, near)
         if found is None:
             self.passed(place, side)
         return found or []
+
+    def given(self, place: str) -> GivenFunctions:
+        """Return the functions that the claim gives for an answer at a place."""
+        return GivenFunctions(self.of.keys, key_at(place), self.scope)
 
     def passed(self, place: str, side: Side) -> None:
         """Note a definition that nothing can be asked of."""

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from contextlib import AbstractContextManager
 
 __all__ = [
-    "FLOAT64", "LONGDOUBLE", "Arithmetic", "multiprecision", "numpy_function_names", "written_constant",
+    "FLOAT64", "LONGDOUBLE", "NOT_IN_NUMPY", "Arithmetic", "multiprecision", "numpy_functions", "written_constant",
 ]  # fmt: skip
 
 _NUMPY_NAMES = {
@@ -27,6 +27,8 @@ _FUNCTION_NAMES = (
     "sin", "cos", "tan", "exp", "log", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh",
     "atanh", "atan2", "Abs", "sign", "erf", "erfc",
 )  # fmt: skip
+NOT_IN_NUMPY = ("erf", "erfc")
+"""Elementary functions that NumPy lacks."""
 _DEEPEST = 20_000
 """Powers of 2 below this negative one are zero in every type of NumPy's."""
 
@@ -129,18 +131,21 @@ def _numpy(dtype: type[np.floating[Any]]) -> Arithmetic:
     def named(name: str) -> Any:
         return dtype(_NAMED[name])
 
-    own = {"erf": _each(dtype, "erf"), "erfc": _each(dtype, "erfc")}
-    functions = own | {
-        name: getattr(np, _NUMPY_NAMES.get(name, name)) for name in _FUNCTION_NAMES if name not in own
-    }
+    own = {name: _each(dtype, name) for name in NOT_IN_NUMPY}
     return Arithmetic(
         name=np.dtype(dtype).name,
         digits=np.finfo(dtype).precision,
         number=number,
         named=named,
         root=np.sqrt,
-        functions=functions,
+        functions=own | numpy_functions(),
     )
+
+
+def numpy_functions() -> dict[str, Callable[..., Any]]:
+    """Return NumPy's elementary functions by their SymPy names; all but :data:`NOT_IN_NUMPY`."""
+    names = (name for name in _FUNCTION_NAMES if name not in NOT_IN_NUMPY)
+    return {name: getattr(np, _NUMPY_NAMES.get(name, name)) for name in names}
 
 
 FLOAT64 = _numpy(np.float64)
@@ -148,11 +153,6 @@ FLOAT64 = _numpy(np.float64)
 
 LONGDOUBLE = _numpy(np.longdouble)
 """The platform's ``long double``: 64-bit mantissa on x86, no wider than a double on some others."""
-
-
-def numpy_function_names() -> dict[str, str]:
-    """Return what NumPy calls the elementary functions, by their SymPy names; it has no erf and erfc."""
-    return {name: _NUMPY_NAMES.get(name, name) for name in _FUNCTION_NAMES}
 
 
 def written_constant(name: str) -> str:

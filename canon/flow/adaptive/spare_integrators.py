@@ -22,7 +22,7 @@ _SYSTEMS, _EACH = 16, 4
 
 @dataclass(frozen=True, eq=False)
 class SpareIntegrators:
-    """Integrators in doubles, without events, of one system: to make one takes milliseconds.
+    """Integrators in doubles, without events, of one system: to make one is dear (``benchmarks/preparation.py``).
 
     Parameters
     ----------

@@ -45,16 +45,16 @@ def planned(wanted: Sampling, step: float | None, method: Method) -> Plan:
     ValueError
         The step is missing or makes no sense.
     """
-    few = wanted.times is None and wanted.samples <= _FEW and isinstance(step, float)
-    return (_kept_plan if few else _planned)(wanted, step, method)
-
-
-def _planned(wanted: Sampling, step: float | None, method: Method) -> Plan:
     steps = steps_over(wanted.start, wanted.end, step, method)
+    few = wanted.times is None and wanted.samples <= _FEW
+    return (_kept_plan if few else _plan)(wanted, steps)
+
+
+def _plan(wanted: Sampling, steps: int) -> Plan:
     return fixed_plan(wanted.start, (wanted.end - wanted.start) / steps, tuple(wanted.stops(steps)))
 
 
-_kept_plan = functools.lru_cache(maxsize=64)(_planned)
+_kept_plan = functools.lru_cache(maxsize=64)(_plan)
 
 
 def fixed_steps(

@@ -1,8 +1,9 @@
 """Machine code kept between processes: object files in a folder of the user's own, by what they were made of.
 
-To optimize and compile a loop takes some 20 ms, to load it again one. A file is named by the SHA-256 of the program, of
-LLVM's version and of the processor it was made for, and holds the SHA-256 of its code, so that a damaged one is made
-anew. Code is loaded from a folder only where nobody else can write to it; where there is none, nothing is kept.
+To load a loop takes a small part of the time to compile it (``benchmarks/preparation.py``). A file is named by the
+SHA-256 of the program, of LLVM's version and of the processor it was made for, and holds the SHA-256 of its code, so
+that a damaged one is made anew. Code is loaded from a folder only where nobody else can write to it or exchange it;
+where there is none, nothing is kept.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import contextlib
 import functools
 import hashlib
 import os
+import stat
 import sys
 import tempfile
 from pathlib import Path
@@ -53,16 +55,28 @@ def kept_or_made(made_of: str, make: Callable[[], bytes]) -> bytes:
 def folder_of_code() -> Path | None:
     """Return the folder for machine code, made where it is missing; None where there is no safe place for one."""
     try:
-        folder = _caches() / "canon" / "machine-code"
+        folder = (_caches() / "canon" / "machine-code").resolve()
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        if sys.platform != "win32":
-            about = folder.stat()
-            if about.st_uid != os.getuid() or about.st_mode & _OTHERS_WRITE:
-                return None
+        if sys.platform != "win32" and not (_is_own(folder) and all(map(_is_guarded, folder.parents))):
+            return None
         _forget_oldest(folder)
     except (OSError, RuntimeError):  # Path.home() raises the latter where there is no home
         return None
     return folder
+
+
+def _is_own(folder: Path) -> bool:
+    """Tell whether a folder is the user's, and nobody else may write to it."""
+    about = folder.stat()
+    return about.st_uid == os.getuid() and not about.st_mode & _OTHERS_WRITE
+
+
+def _is_guarded(folder: Path) -> bool:
+    """Tell whether nobody but the user and the system can exchange what lies in a folder, as in ``/tmp``."""
+    about = folder.stat()
+    return about.st_uid in (0, os.getuid()) and bool(
+        about.st_mode & stat.S_ISVTX or not about.st_mode & _OTHERS_WRITE
+    )
 
 
 def _caches() -> Path:

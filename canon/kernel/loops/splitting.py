@@ -154,7 +154,7 @@ class SplittingWriter:
     def _kicking(self, coefficient: str) -> _Take:
         """Return what kicks by a rate at once, and keeps it where it is used again.
 
-        One orbit has its force kept first: writing to two arrays in one loop takes a chain of 512 a quarter longer.
+        One orbit has its force kept first: to write to two arrays in one loop slows long chains down.
         """
         moving = self._moving(self.n + self.gap, coefficient)
         if not self.kick_first:

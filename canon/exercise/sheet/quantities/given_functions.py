@@ -122,10 +122,12 @@ class GivenFunctions:
 
     def _bracket(self, f: Expr, g: Expr) -> Expr | None:
         """Return Poisson's bracket in the claim's coordinates and momenta."""
+        from canon.mechanics.hamilton.bracket import (
+            poisson_bracket,  # most sheets need no mechanics to be read
+        )
+
         q, p = self._symbols("q"), self._symbols("p")
-        if q is None or p is None or len(q) != len(p):
-            return None
-        return sp.Add(*(f.diff(x) * g.diff(y) - f.diff(y) * g.diff(x) for x, y in zip(q, p, strict=True)))
+        return None if q is None or p is None or len(q) != len(p) else poisson_bracket(f, g, q, p)
 
     def _symbols(self, key: str) -> list[Symbol] | None:
         """Return the symbols that a key lists; None where it lists none, as for coordinates in terms of others."""

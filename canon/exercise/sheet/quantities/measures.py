@@ -39,7 +39,8 @@ _PLAIN: Mapping[str, tuple[Expr, tuple[int, ...]]] = {
     "rev": (2 * sp.pi, ()), "rpm": (sp.pi / 30, (0, 0, -1)), "t": (Rational(1000), (0, 1)),
     "au": (Rational(149597870700), (1,)),
 }  # fmt: skip
-_COUNTS = {"cycles": ("Hz",), "turns": ("rev", "rpm"), "angles": ("rad", "deg", "°")}
+_COUNTED_IN = {"angles": ("rad", "deg", "°"), "turns": ("rev", "rpm")}
+"""Units without a dimension that frequencies are counted in."""
 _MOST = 80
 """Characters of a unit."""
 _LONGEST = 2_000
@@ -76,24 +77,28 @@ class Measure:
 
     factor: Expr
     powers: tuple[int, ...]
-    counts: str = field(default="", compare=False)
-    """What a frequency counts: ``"cycles"`` in Hz, ``"turns"`` in rpm and rev/s, ``"angles"`` in rad/s and deg/s."""
+    hertz: int = field(default=0, compare=False)
+    """To which power hertz stands in it."""
+    counted_in: str = field(default="", compare=False)
+    """``"turns"`` where it holds rev or rpm, ``"angles"`` where it holds rad or degrees."""
 
-    def as_(self, asked: Measure) -> Expr | None:
+    def factor_to(self, asked: Measure) -> Expr | None:
         """Return the factor to a unit of the same powers; None between hertz and an angle by the second.
 
         One hertz is one cycle a second, or one turn; whether a cycle is 2π rad there, only who asks can say.
 
         Examples
         --------
-        >>> measure_of("rpm").as_(measure_of("Hz")), measure_of("Hz").as_(measure_of("rad/s"))
+        >>> measure_of("rpm").factor_to(measure_of("Hz")), measure_of("Hz").factor_to(measure_of("rad/s"))
         (1/60, None)
         """
-        both = {self.counts, asked.counts}
-        if both == {"cycles", "angles"}:
+        factor, cycles = self.factor / asked.factor, self.hertz - asked.hertz
+        if not cycles:
+            return factor
+        others = {self.counted_in, asked.counted_in}
+        if "angles" in others:
             return None
-        turn = 2 * sp.pi if both == {"cycles", "turns"} else sp.S.One
-        return self.factor / asked.factor * (turn if self.counts == "cycles" else 1 / turn)
+        return factor * (2 * sp.pi) ** cycles if "turns" in others else factor
 
 
 def measure_of(unit: str) -> Measure | None:
@@ -116,9 +121,9 @@ def measure_of(unit: str) -> Measure | None:
             return None
         factor *= one[0] ** power
         powers = [p + power * own for p, own in zip_longest(powers, one[1], fillvalue=0)]
-    names = {name for name, _ in named}
-    counts = [what for what, units in _COUNTS.items() if any(name.endswith(units) for name in names)]
-    return Measure(factor, tuple(powers), counts[0] if counts else "")
+    hertz = sum(power for name, power in named if name.endswith("Hz"))
+    counted = [what for what, units in _COUNTED_IN.items() if any(name.endswith(units) for name, _ in named)]
+    return Measure(factor, tuple(powers), hertz, counted[0] if counted else "")
 
 
 def _without_latex(unit: str) -> str:
