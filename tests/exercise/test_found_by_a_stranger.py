@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon import CanonicalTransformation, Lagrangian, coordinates, propagate
+from canon import CanonicalTransformation, Hamiltonian, Lagrangian, coordinates, propagate
 from canon.exercise.explained_judgement import judgements
 from canon.exercise.sheet.sheet import claim_from
-from canon.mechanics import VectorField
+from canon.mechanics import ConstrainedLagrangian, VectorField
 
 x, y = coordinates("x y")
 
@@ -115,3 +115,104 @@ def test_starts_and_parameters_of_the_wrong_kind_are_told() -> None:
             propagate(system, (0, 1), [1, 0], parameters=[1, 1])
     with pytest.raises(TypeError, match="those of a function go into it"):
         propagate(lambda t, z: -z, (0, 1), [1], args=(0.3,))
+
+
+ROUTH = {
+    "kind": "routhian", "q": ["r", "phi"], "L": "m*(r_dot**2 + r**2*phi_dot**2)/2 - k*r**2/2", "cyclic": ["phi"],
+    "momenta": ["l"], "convention": "pq-L", "parameters": {"m": "positive", "k": "positive"},
+}  # fmt: skip
+NEW_H = {
+    "kind": "transformed-hamiltonian-K", "q": ["q"], "p": ["p"], "new_q": ["Q"], "new_p": ["P"], "H": "p**2/2",
+}  # fmt: skip
+FREE = {
+    "kind": "constant-of-motion", "q": ["x", "y"], "L": "m*(x_dot**2 + y_dot**2)/2", "parameters": {"m": "positive"},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("asked", "key", "right", "wrong"),
+    [
+        (ROUTH, "R", "R = lφ̇ - L = l²/(2mr²) + k r²/2 - m ṙ²/2", "R = -L = l²/(2mr²) + k r²/2 - m ṙ²/2"),
+        (ROUTH, "R", "lφ̇ - L = l²/(2mr²) + k r²/2 - m ṙ²/2", "L - lφ̇ = l²/(2mr²) + k r²/2 - m ṙ²/2"),
+        ({**NEW_H, "map": {"Q": ["p"], "P": ["-q"]}}, "K", "K = H = Q²/2", "K = -H = Q²/2"),
+        ({**NEW_H, "inverse_map": {"q": ["-P"], "p": ["Q"]}}, "K", "K = H = Q²/2", "K = 2H = Q²/2"),
+        (FREE, "I", "E = L = m(ẋ² + ẏ²)/2", "E = 2L = m(ẋ² + ẏ²)/2"),
+        (FREE, "I", "L_z = m(x ẏ - y ẋ)", "L_z = m(x ẏ + y ẋ)"),
+        (FREE, "I", "I = L_z = m(xẏ - yẋ) = const.", "I = L_z = mxẏ = const."),
+        (FREE, "I", r"$m\dot x = \text{const}$", r"$mx = \text{const}$"),
+    ],
+)  # fmt: skip
+def test_functions_in_chains_are_worked_out(
+    asked: dict[str, object], key: str, right: str, wrong: str
+) -> None:
+    assert judged(**asked, **{key: right}).status == "holds"
+    assert judged(**asked, **{key: wrong}).status == "fails"
+
+
+@pytest.mark.parametrize("said", ["x = m*x_dot", "L_z' = m*x_dot", "dE/dt = 0"])
+def test_a_constant_has_a_name_that_is_free(said: str) -> None:
+    assert "I is asked for here" in judged(**FREE, I=said).known
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "right", "wrong"),
+    [
+        ("9.81", "m/s^2", "9.81 ms⁻²", "9.81 ms²"),
+        ("9.81", "m/s^2", r"$\SI{9.81}{\metre\per\second\squared}$", r"$\SI{9.81}{\metre\per\second}$"),
+        ("9.81", "m/s^2", r"$\qty{9.81}{m.s^{-2}}$", r"$\qty{9.81}{m.s^{2}}$"),
+        ("3", "kHz", "3 ms⁻¹", "3 ms"),
+        ("3", "m/s", "3 ms⁻¹", "3 ms"),
+        ("3", "J", "3 Nm", "3 nm"),
+        ("3", "J", "3 kgm²/s²", "3 kgm/s²"),
+        ("3600", "kJ", "1 kWh", "1 kW"),
+        ("2", "s", "2 seconds", "2 minutes"),
+        ("2", "s", r"$2\,\rm{s}$", r"$2\,\rm{h}$"),
+        ("2", "s", r"$T = 2~s$", r"$T = 2~ms$"),
+        ("2", "s", r"$\SI{2000}{\milli\second}$", r"$\SI{2}{\milli\second}$"),
+        ("pi", "rad", "180 degrees", "90 degrees"),
+        ("pi", "rad", "1/2 turn", "2 turns"),
+    ],
+)
+def test_units_as_they_are_typed(value: str, unit: str, right: str, wrong: str) -> None:
+    asked = {"kind": "number", "value": value, "unit": unit}
+    assert judged(**asked, claim=right).status == "holds"
+    assert judged(**asked, claim=wrong).status == "fails"
+
+
+@pytest.mark.parametrize("word", ["Non-holonomic", "non holonomic", "anholonomic"])
+def test_classes_by_other_spellings(word: str) -> None:
+    asked = {"kind": "constraint-class", "q": ["x", "y", "z"]}
+    assert (
+        judged(**asked, constraints=["x_dot - z*y_dot"], **{"class": [word, "scleronomous"]}).status
+        == "holds"
+    )
+    assert judged(**asked, constraints=["x_dot - y*y_dot"], **{"class": [word]}).status == "fails"
+
+
+def test_a_part_of_lagranges_equation_is_no_equation_of_motion() -> None:
+    found = judged(kind="euler-lagrange", q=["x"], L="x_dot**2/2 - x**2/2", claim=["∂L/∂x = -x"])
+    assert "no equation of motion" in found.known
+
+
+@pytest.mark.parametrize("constraint", ["0", "x - x", "a", "a - 1"])
+def test_what_constrains_nothing_is_refused(constraint: str) -> None:
+    found = judged(
+        kind="multiplier-holonomic", q=["x", "y"], L="x_dot**2/2 + y_dot**2/2", constraints=[constraint, "x - y"],
+        multipliers=["lam", "mu"], claim=["x_ddot"], parameters={"a": "real"},
+    )  # fmt: skip
+    assert found.status == "invalid"
+    assert "constrains no coordinate" in found.known
+    free = Lagrangian((x.dot**2 + y.dot**2) / 2, [x, y])
+    with pytest.raises(
+        ValueError, match="is true anyway" if constraint in ("0", "x - x") else "restricts nothing"
+    ):
+        ConstrainedLagrangian(free, [sp.sympify(constraint, {"x": x})])
+    assert ConstrainedLagrangian(free, [x - y], [x.dot]).nonholonomic == (x.dot,)
+
+
+def test_a_hamiltonian_holds_no_velocities() -> None:
+    with pytest.raises(
+        ValueError, match=r"H holds x_dot, .* write it in p_x"
+    ):
+        Hamiltonian(x.dot**2 / 2, [x], [x.momentum])
+    assert Hamiltonian(x.momentum**2 / 2, [x], [x.momentum]).q_dot == (x.momentum,)

@@ -82,7 +82,7 @@ def test_fails(question, answer):
         (H, {"H": f"H = T - V = {RIGHT}"}, "T is not declared"),
         (H, {"H": f"H = {RIGHT}; p_θ = 3"}, "another statement beside H"),
         (EL, {"claim": ["d/dt(∂L/∂θ̇) - ∂L/∂θ = 0"]}, "true of every system"),
-        (EL, {"claim": ["d/dt(∂L/∂θ̇) = m l² θ̈"]}, "true of every system"),
+        (EL, {"claim": ["d/dt(∂L/∂θ̇) = m l² θ̈"]}, "no equation of motion"),
         (PB, bracket("{x, L_z} = y"), "is asked for here, and this says {x, L_z}"),
         (PB, bracket("{L_z, y} = y"), "is asked for here, and this says {L_z, y}"),
         (EL, {"claim": ["h θ̈ = w"]}, "h is not declared"),

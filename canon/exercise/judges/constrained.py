@@ -64,6 +64,9 @@ def bound_by(
     v = lagrangian.velocities
     if any(g.diff(u).has(*v) for g in constraints for u in v):
         reading.fault("constraints", "every constraint should be affine in the velocities")
+    for g in constraints:
+        if not g.has(*lagrangian.q, *v):
+            reading.fault("constraints", f"{g} = 0 constrains no coordinate and no velocity")
     pairs = list(zip(constraints, multipliers, strict=True))
     positions, moving = ([pair for pair in pairs if pair[0].has(*v) is some] for some in (False, True))
     bound = ConstrainedLagrangian(lagrangian, [f for f, _ in positions], [g for g, _ in moving])

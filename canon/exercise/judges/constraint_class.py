@@ -36,9 +36,10 @@ _RELATION = re.compile(r"(<=|>=|<|>|=|≤|≥|\\leq?\b|\\geq?\b)")
 def constraint_class(reading: Reading) -> Iterator[Question]:
     """Each word of the claim is right for the constraints as a whole."""
     constraints = _constraints(reading)
-    pairs = [_pair_of(reading, i, word) for i, word in enumerate(reading.claim.keys["class"])]
+    words = [_spelled(word) for word in reading.claim.keys["class"]]
+    pairs = [_pair_of(reading, i, word) for i, word in enumerate(words)]
     verdicts: list[Verdict] = []
-    for word, pair in zip(reading.claim.keys["class"], pairs, strict=True):
+    for word, pair in zip(words, pairs, strict=True):
         first = _first_of(pair, constraints)
         verdict = first if word == pair[0] else opposite(first, "")
         verdicts.append(verdict.about(word))
@@ -48,6 +49,20 @@ def constraint_class(reading: Reading) -> Iterator[Question]:
     yield Stated(all_hold(verdicts))
     untold = [" or ".join(pair) for pair in _PAIRS if pair not in pairs]
     yield Determines(lambda: stay_open(untold))
+
+
+def _spelled(word: str) -> str:
+    """Return a word as it is spelled here, ``Non-holonomic`` and ``scleronomous`` too.
+
+    Examples
+    --------
+    >>> _spelled("Non-holonomic"), _spelled("rheonomous"), _spelled("round")
+    ('nonholonomic', 'rheonomic', 'round')
+    """
+    plain = re.sub(r"[\s_-]+", "", word.lower()).removesuffix("ous")
+    return {"anholonomic": "nonholonomic", "scleronom": "scleronomic", "rheonom": "rheonomic"}.get(
+        plain, plain
+    )
 
 
 def _pair_of(reading: Reading, i: int, word: str) -> tuple[str, str]:

@@ -15,7 +15,7 @@ from sympy import Expr, Rational
 
 from canon.exercise.question.answer import stay_open
 from canon.exercise.question.question import Determines, Question, Stated
-from canon.exercise.sheet.quantities.measures import Measure, measure_of
+from canon.exercise.sheet.quantities.measures import Measure, measure_like, measure_of
 from canon.mechanics.algebra.substitution import substitute
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain.verdict import Counterexample, Status, Undecided, Verdict
@@ -158,7 +158,8 @@ def _values(reading: Reading, key: str, asked: Measure | None) -> list[Expr | No
             reading.fault(place, f"a number is asked for, and this holds {names}; say its value under given")
         if f.has(sp.nan, sp.zoo, sp.oo):
             reading.fault(place, "this has no value")
-        unit = measure_of(reading.units.get(place, ""))
+        written = reading.units.get(place, "")
+        unit = measure_of(written) if asked is None else measure_like(written, asked)
         if asked is None or unit is None:
             found.append(f)
         elif unit.powers != asked.powers and key == "value":

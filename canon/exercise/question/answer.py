@@ -86,17 +86,27 @@ def _texts(key: str, shape: Shape, value: Any) -> list[tuple[str, Any]]:
 
 
 def links(reading: Reading) -> Iterator[Chain]:
-    """Yield the question whether the sides of each chain ``a = b = c`` are the same, momenta being ∂L/∂q̇."""
-    through: dict[Symbol, Expr] = {}
-    if reading.links and "p" in reading.kind.following and reading.has("L"):
-        L = reading.expression("L")
-        q, p = reading.phase_space("q", "p")
-        through = {momentum: L.diff(velocity(x)) for x, momentum in zip(q, p, strict=True)}
+    """Yield the question whether the sides of each chain are the same, some variables following others."""
+    through = _following(reading) if reading.links else {}
     for place, text in reading.links:
         part = Part(f"the chain under {place}", reading.equation(place, text), through=through)
         shown = " ".join(text.replace("=", " = ").split())
         said = f"two sides under {place} that are said to be equal are not: {shown}"
         yield Chain(part, reading.domain, said)
+
+
+def _following(reading: Reading) -> dict[Symbol, Expr]:
+    """Return what follows from other variables: momenta are ∂L/∂q̇, new variables those of the map."""
+    if reading.has("L") and ("p" in reading.kind.following or reading.has("cyclic")):
+        L, names = reading.expression("L"), ("cyclic", "momenta") if reading.has("cyclic") else ("q", "p")
+        q, p = reading.phase_space(*names)
+        return {momentum: L.diff(velocity(x)) for x, momentum in zip(q, p, strict=True)}
+    for key, old, new in (("map", ("Q", "P"), ("new_q", "new_p")), ("inverse_map", ("q", "p"), ("q", "p"))):
+        if reading.has("K") and reading.has(key):
+            images = reading.lists(key, dict(zip(old, new, strict=True)))
+            names = [*reading.symbols(new[0]), *reading.symbols(new[1])]
+            return dict(zip(names, (*images[0], *images[1]), strict=True))
+    return {}
 
 
 def stay_open(names: Sequence[object]) -> tuple[str, ...]:

@@ -21,6 +21,7 @@ __all__ = [
     "equations_listed",
     "is_name_of_matrix",
     "of_matrix",
+    "says_constant",
     "texts_in",
     "whole_statement",
     "without_remainder",
@@ -53,6 +54,20 @@ _DRESS = re.compile(
     r"|(?<=[)\]}])\s*\^\s*\{?\s*(?:T|\\top|\\intercal|\\mathsf\s*\{?T\}?)\s*\}?(?=[\s$.]*$)"
 )
 """What is around a list of components and says nothing of them."""
+_CONSTANT = re.compile(
+    r"[\s$]*(?:\\(?:text|mathrm|textrm|operatorname|mbox|rm)\s*\{?\s*)?const(?:ant)?\.?\s*\}?[\s$.,;]*"
+)
+
+
+def says_constant(text: str) -> bool:
+    r"""Tell whether a side says no more than that it is constant.
+
+    Examples
+    --------
+    >>> says_constant(r"$\text{const.}"), says_constant(" constant"), says_constant("c")
+    (True, True, False)
+    """
+    return _CONSTANT.fullmatch(text) is not None
 
 
 def equation_between(left: Side, right: Side) -> str:

@@ -26,7 +26,7 @@ from canon.exercise.sheet.left_sides import (
 )
 from canon.exercise.sheet.matrix_products import components_of_products, equations_of_products
 from canon.exercise.sheet.quantities.given_functions import GivenFunctions, key_at
-from canon.exercise.sheet.typed_values import both_signs, typed_values
+from canon.exercise.sheet.typed_values import signed_tables, values_under
 from canon.exercise.sheet.vector_equations import vector_equations
 from canon.expression.parse import LanguageError, parse_expression, statements_of
 
@@ -126,7 +126,8 @@ class _Plain:
             case Shape.LISTS if isinstance(value, Mapping):
                 return {part: self.components(f"{key}.{part}", texts) for part, texts in value.items()}
             case Shape.VALUES:
-                return [one for i, table in enumerate(value) for one in self.both_signs(f"{key}[{i}]", table)]
+                places = ((f"{key}[{i}]", table) for i, table in enumerate(value))
+                return [one for place, table in places for one in signed_tables(place, table, self.fault)]
             case Shape.BRACKETS:
                 return [self.bracket(f"{key}[{i}]", pair) for i, pair in enumerate(value)]
             case _:
@@ -143,37 +144,11 @@ class _Plain:
 
     def several(self, key: str, value: Any) -> list[Any]:
         """Return values one by one, each with the unit behind it kept apart."""
-        found: list[Any] = []
-        for i, text in enumerate(value if isinstance(value, list) else [value]):
-            place, measured = f"{key}[{i}]", "unit" in self.of.keys
-            try:
-                name = str(self.of.keys.get("name", ""))
-                values, passed = typed_values(str(text), self.scope, measured=measured, name=name)
-            except LanguageError as error:
-                raise self.fault(place, error) from None
-            self.found.passed += [
-                f"{side} in {key} is passed over: it holds names that are not declared" for side in passed
-            ]
-            if measured and key in self.kind.answer:
-                bare = (value.text.strip(" $") for value in values if not value.unit)
-                asked = f"is read in {self.of.keys['unit']}, the unit that is asked for"
-                self.found.passed += [f"{text} {asked}" for text in bare]
-            self.found.units |= {f"{key}[{len(found) + j}]": value.unit for j, value in enumerate(values)}
-            found += [value.text for value in values]
-        return found
-
-    def both_signs(self, place: str, table: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-        """Return the one or two tables that values with ``±`` stand for."""
-        try:
-            signed = {name: both_signs(text) for name, text in table.items() if isinstance(text, str)}
-        except LanguageError as error:
-            raise self.fault(place, error) from None
-        two = [name for name, texts in signed.items() if len(texts) == 2]
-        if len(two) > 1:
-            text = str(table[two[1]])
-            told = f"is ± of {two[0]} and of {two[1]} chosen together, or each by itself?"
-            raise self.fault(place, LanguageError(text, 1, told, "write the tables one by one"))
-        return [{**table, two[0]: text} for text in signed[two[0]]] if two else [table]
+        answer = key in self.kind.answer
+        values, passed = values_under(key, value, self.of.keys, self.scope, self.fault, answer=answer)
+        self.found.passed += passed
+        self.found.units |= {f"{key}[{i}]": value.unit for i, value in enumerate(values)}
+        return [value.text for value in values]
 
     def has_equations(self, key: str) -> bool:
         """Tell whether a list holds equations, whose left sides are no names."""
@@ -214,9 +189,10 @@ class _Plain:
             else:
                 reason, remedy = f"one expression is asked for: {asked.shown}", "leave the others out"
             raise self.told(place, text, other, reason, remedy)
-        sides = list(next(iter(statements)).sides)
+        first, *others = next(iter(statements)).sides
+        sides = [first, *(side for side in others if not self.is_constant(place, side))]
         if len(sides) == 1:
-            return text
+            return first.text if others else text
         if self.is_asked(sides[0], asked):
             if place == "H" and sides[0].said.startswith("E"):
                 self.found.passed.append("E in H is read as H, which is asked for")
@@ -231,7 +207,7 @@ class _Plain:
         for side in sides[:-1]:
             if self.is_asked(side, asked):
                 continue
-            if self.is_origin(place, side, asked.shown):
+            if self.is_origin(place, side, asked.shown) or self.given(place).put_in(side.text) is not None:
                 self.found.links += [(place, made) for made in self.origin(place, side, sides[-1])]
             else:
                 self.read(place, text, side, asked)
@@ -278,7 +254,7 @@ class _Plain:
         label = label_of(side.said)
         if label is None or place in ("lhs", "rhs"):
             return
-        if label.name or asked.bracket:
+        if self.given(place).put_in(side.text) is None and (label.name or asked.bracket):
             raise self.contradiction(place, text, side, asked)
 
     def contradiction(self, place: str, text: str, side: Side, asked: Quantity) -> Exception:
@@ -290,8 +266,16 @@ class _Plain:
         )
 
     def is_asked(self, side: Side, asked: Quantity) -> bool:
-        """Tell whether a side is a name of what is asked."""
-        return is_asked(label_of(side.said), asked, self.scope)
+        """Tell whether a side is a name of what is asked; of a constant of the motion, any name that is free."""
+        label = label_of(side.said)
+        if asked.shown == "I" and label is not None and label.name and not label.rates:
+            given = self.scope.declares(label.name) or isinstance(self.of.keys.get(label.name), str)
+            asked = asked if given else Quantity("I", ((label.name, 0),))
+        return is_asked(label, asked, self.scope)
+
+    def is_constant(self, place: str, side: Side) -> bool:
+        """Tell whether a side only says that the others are constant."""
+        return place == "I" and not self.scope.declares("const") and field_texts.says_constant(side.text)
 
     def bracket(self, place: str, pair: Any) -> Any:
         """Return a bracket whose value is in plain form."""
@@ -395,8 +379,7 @@ class _Plain:
             return links or [sides[0].text]
         whole = len(rest) == 1 and "-" in sides[0].said and rest[0].said.strip("$0. ")
         if len(rest) < 2 and not whole:
-            reason = "this is Lagrange's equation itself, true of every system"
-            raise self.told(place, text, sides[0], reason, "write out what it is for this one")
+            raise self.told(place, text, sides[0], _no_equation(rest), "write out what it is for this one")
         made: list[str] = []
         for side, beside in zip(sides, (*sides[1:], sides[-2]), strict=True):
             if side not in rest:
@@ -415,3 +398,10 @@ class _Plain:
     def told(self, place: str, text: str, side: Side, reason: str, remedy: str) -> Exception:
         """Return the error of one side of a text."""
         return self.fault(place, LanguageError(text, side.column, reason, remedy))
+
+
+def _no_equation(beside: Sequence[Side]) -> str:
+    """Return what is wrong with ``d/dt(∂L/∂θ̇) = ∂L/∂θ``, or with ``∂L/∂x = -k x``, as an equation of motion."""
+    if any(side.said.strip("$0. ") for side in beside):
+        return "this says what a part of Lagrange's equation is, and is no equation of motion"
+    return "this is Lagrange's equation itself, true of every system"

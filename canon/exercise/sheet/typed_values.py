@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from canon.exercise.sheet.field_texts import entries_of
 from canon.exercise.sheet.left_sides import label_of
@@ -19,12 +19,14 @@ from canon.expression.text.markup import unmarked
 from canon.expression.text.tokens import LanguageError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator, Mapping
 
     from canon.expression.text.scope import Scope
     from canon.expression.text.statement import Side
 
-__all__ = ["Value", "both_signs", "typed_values"]
+    _Fault = Callable[[str, LanguageError], Exception]
+
+__all__ = ["Value", "both_signs", "signed_tables", "typed_values", "values_under"]
 
 MOST_VALUES = 100
 """Most values in one field."""
@@ -131,6 +133,54 @@ def typed_values(text: str, scope: Scope, *, measured: bool, name: str = "") -> 
         if len(values) > MOST_VALUES:
             raise LanguageError(text, 1, f"more than {MOST_VALUES} values", "split the claim")
     return values, passed
+
+
+def values_under(
+    key: str, value: Any, keys: Mapping[str, Any], scope: Scope, fault: _Fault, *, answer: bool
+) -> tuple[list[Value], list[str]]:
+    """Return the values that the fields under a key say, and sentences on what was passed over.
+
+    Parameters
+    ----------
+    key, value
+        The key, and one field or a list of them.
+    keys
+        The claim, with the unit that is asked for and the name of what is asked.
+    scope
+        The declared names.
+    fault
+        Makes the error of a text at a place.
+    answer
+        Whether the answer stands here.
+    """
+    values: list[Value] = []
+    told: list[str] = []
+    for i, text in enumerate(value if isinstance(value, list) else [value]):
+        measured, name = "unit" in keys, str(keys.get("name", ""))
+        try:
+            found, passed = typed_values(str(text), scope, measured=measured, name=name)
+        except LanguageError as error:
+            raise fault(f"{key}[{i}]", error) from None
+        told += [f"{side} in {key} is passed over: it holds names that are not declared" for side in passed]
+        if measured and answer:
+            bare = (one.text.strip(" $") for one in found if not one.unit)
+            told += [f"{text} is read in {keys['unit']}, the unit that is asked for" for text in bare]
+        values += found
+    return values, told
+
+
+def signed_tables(place: str, table: Mapping[str, Any], fault: _Fault) -> list[Mapping[str, Any]]:
+    """Return the one or two tables that values with ``±`` stand for."""
+    try:
+        signed = {name: both_signs(text) for name, text in table.items() if isinstance(text, str)}
+    except LanguageError as error:
+        raise fault(place, error) from None
+    two = [name for name, texts in signed.items() if len(texts) == 2]
+    if len(two) > 1:
+        text = str(table[two[1]])
+        told = f"is ± of {two[0]} and of {two[1]} chosen together, or each by itself?"
+        raise fault(place, LanguageError(text, 1, told, "write the tables one by one"))
+    return [{**table, two[0]: text} for text in signed[two[0]]] if two else [table]
 
 
 def _plain_signs(text: str, scope: Scope) -> str:

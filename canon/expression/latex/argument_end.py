@@ -10,12 +10,26 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from canon.expression.latex.names import Mark
-from canon.expression.latex.pieces import Group, Piece, Powered, is_function, names_in, unbraced
+from canon.expression.latex.pieces import (
+    FactorRun,
+    Group,
+    Head,
+    LatexFraction,
+    Operator,
+    Piece,
+    Powered,
+    is_function,
+    names_in,
+    unbraced,
+)
 from canon.expression.latex.understood_time import is_time
 from canon.expression.symbols.symbol import Coordinate, Momentum, Rate
+from canon.expression.text.open_readings import counts, is_angle
 from canon.expression.text.syntax import Name, Node
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from canon.expression.text.scope import Scope
 
 __all__ = ["ArgumentEnd", "bare_argument"]
@@ -99,12 +113,21 @@ class ArgumentEnd:
         if isinstance(base, Name):
             symbol = self.scope.symbol(base.text)
             return isinstance(symbol, Rate) or (self.is_angle(taken[-1]) and isinstance(symbol, Momentum))
-        return (
-            isinstance(base, Group)
-            and base.printed
-            and self.is_angle(taken[-1])
-            and not is_time(base, self.scope)
-        )
+        if not (isinstance(base, Group) and base.printed and self.is_angle(taken[-1])):
+            return False
+        wave = not any(is_angle(name.text) or self._moves(name.text) for name in names_in(taken[-1]))
+        return not is_time(base, self.scope) and not (wave and self.holds_what_moves(base))
+
+    def holds_what_moves(self, group: Group) -> bool:
+        r"""Whether a bracket could go on with an argument, as in ``\cos\beta(x - v t)``."""
+        return any(self._moves(name.text) or name.text in "xyzt" for name in _names_of(group))
+
+    def divides(self, argument: tuple[Piece, ...], below: Piece) -> bool:
+        r"""Whether a slash behind a function divides it, ``g\sin\theta/l``: nobody divides an angle by a length."""
+        alone = len(argument) == 1 and isinstance(argument[0], Name) and is_angle(argument[0].text)
+        base = unbraced(below.base) if isinstance(below, Powered) else unbraced(below)
+        read = isinstance(base, Group | Name)
+        return alone and read and any(not counts(name.text) and name.text != "pi" for name in _names_of(base))
 
     def goes_on(self, taken: list[Node], item: Piece) -> bool:
         r"""Whether a factor surely continues an argument, as the t of ``\omega t`` does."""
@@ -127,6 +150,24 @@ class ArgumentEnd:
         symbol = self.scope.symbol(name)
         of_motion = isinstance(symbol, Coordinate | Momentum | Rate)
         return of_motion or symbol == self.scope.time or name in self.scope.functions
+
+
+def _names_of(piece: Piece) -> Iterator[Name]:
+    """Yield the names in a piece; none of what is no factor yet, as an operator."""
+    match piece:
+        case Group():
+            yield from _names_of(piece.inner)
+        case Powered():
+            yield from _names_of(piece.base)
+        case FactorRun():
+            for item in piece.items:
+                yield from _names_of(item)
+        case LatexFraction():
+            yield from names_in(piece.node)
+        case Head() | Operator() | Mark():
+            return
+        case _:
+            yield from names_in(piece)
 
 
 def bare_argument(items: tuple[Piece, ...]) -> tuple[Piece, ...]:

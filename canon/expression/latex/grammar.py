@@ -225,17 +225,20 @@ class _Build(Transformer_NonRecursive[Token, Any]):
                 if last is None:
                     self.open_quotient(before, above, found)
                 factors += [(number < last, node) for number, node in enumerate(found)]
-            if after and after.kind == "SLASH" and bare_argument(items):
-                self.open_slash(after, found[-1], children)
+            if after and after.kind == "SLASH" and (argument := bare_argument(items)):
+                self.open_slash(after, found[-1], argument, children)
         return Product(tuple(factors), children[0].column)
 
-    def open_slash(self, slash: Word, function: Node, children: list[Any]) -> NoReturn:
-        r"""Refuse a slash behind a function without brackets, ``g\sin\theta / l``, with both readings."""
+    def open_slash(
+        self, slash: Word, function: Node, argument: tuple[Piece, ...], children: list[Any]
+    ) -> None:
+        r"""Refuse a slash behind a function without brackets, ``\sin x / l``, with both readings."""
         behind = next((c for c in children[1:] if not isinstance(c, Word) and c.column > slash.column), None)
+        if behind and self.meaning.ends.divides(argument, _items(behind)[0]):
+            return
         below = shown(self.meaning.factors(_items(behind))[:1]) if behind else "…"
-        over = shown([function])
-        name, _, inside = over.partition("(")
-        readings = f"{over}/{below} or {name}({inside.removesuffix(')')}/{below})"
+        over, inside = shown([function]), shown(self.meaning.factors(argument))
+        readings = f"{over}/{below} or {over.replace(f'({inside})', f'({inside}/{below})')}"
         told = f"does this divide the function or its argument? {readings}"
         self.meaning.refuse(slash.column, told, r"write \frac{a}{b} or brackets, whichever is meant")
 

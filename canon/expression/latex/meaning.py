@@ -33,6 +33,7 @@ from canon.expression.latex.printed_forms import refuse_open_e
 from canon.expression.latex.quotient import shown
 from canon.expression.latex.understood_time import has_rate_or_is_momentum, without_time
 from canon.expression.text.differentials import PRIMED
+from canon.expression.text.open_readings import DECLARED_E, looks_like_eulers
 from canon.expression.text.syntax import Call, LanguageError, Name, Node, Number, Power, Product, Tuple
 
 if TYPE_CHECKING:
@@ -104,7 +105,10 @@ class Meaning:
             if isinstance(piece.exponent, Number):
                 refuse_open_e(self.text, piece.base.column)
             return Call("exp", (piece.exponent,), piece.column)
-        return Power(self.node(piece.base), piece.exponent, piece.column)
+        base = self.node(piece.base)
+        if looks_like_eulers(base, piece.exponent, self.scope):
+            self.refuse(piece.column, *DECLARED_E)
+        return Power(base, piece.exponent, piece.column)
 
     def factors(self, items: tuple[Piece, ...]) -> list[Node]:
         """Return the factors of pieces side by side."""

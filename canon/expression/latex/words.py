@@ -53,6 +53,7 @@ _SPACE = re.compile(
 _THIN = re.compile(r"\s|\\[!/]|\\displaystyle|\\negthinspace|\\qty|\\(?:no)?limits")
 """The spaces that show no gap in print."""
 _NUMBER = re.compile(r"[0-9]+(?:\.[0-9]+)?|\.[0-9]+")
+_FIGURES = re.compile(r"[0-9]+(?![.0-9])")
 _RUN = re.compile(r"[A-Za-z][A-Za-z0-9]*")
 _COMMAND = re.compile(r"\\(?:[A-Za-z]+|.)", re.DOTALL)
 _COMMAND_WITH_ARGUMENT = re.compile(r"\\(?:[A-Za-z]+(?:\{[^{}]{0,200}\})?|.)", re.DOTALL)
@@ -214,6 +215,8 @@ class _Reader:
         self.at = after.at
         pieces, rates = pieces or after.pieces, order or after.primes
         item: Item | None = self.names.spelled(found, pieces, rates, column, dotted=order > 0)
+        if item is None and not pieces and not bare:
+            item = self.numbered(found, rates, column, dotted=order > 0)
         if item is None and not pieces and not rates:
             item = _undeclared(found[0], column)
         if item is None:
@@ -225,6 +228,14 @@ class _Reader:
             self.refuse(column, f"{shown} is not declared", remedy)
         self.put([item], column)
         self.out.raised(after.power)
+
+    def numbered(self, found: tuple[str, ...], rates: int, column: int, *, dotted: bool) -> Item | None:
+        r"""Read the number of ``\theta1`` as a subscript, where only names with it are declared."""
+        number = _FIGURES.match(self.text, self.at, self.end)
+        item = number and self.names.spelled(found, ((number.group(),),), rates, column, dotted=dotted)
+        if number and item:
+            self.at = number.end()
+        return item
 
     def case(self, sign: str) -> None:
         r"""Read ``\begin{cases}``, ``\\`` and ``\end{cases}``."""

@@ -31,6 +31,8 @@ _CAPITAL = {name.capitalize(): name for name in (
 _TWO_LETTERS = ("am", "sn", "cn", "dn")
 """Jacobi's functions as books write them, unless both letters are declared: then they are factors."""
 _GREEK = frozenset(GREEK.values())
+_INVERSE = ("asin", "acos", "atan", "acot", "asinh", "acosh", "atanh")
+"""Functions that are a factor a and another function where a is declared."""
 _CALLED = frozenset((
     *FUNCTIONS, "Derivative", "diff", "Piecewise", "Eq", "Ne", "Symbol", "Function", "Integer", "Rational", "Mul",
     "Add", "Pow", "Tuple", "Hold", "Times", "Plus", "Power", "pow", "Float", "Fraction", "Equality", "Equal",
@@ -114,6 +116,8 @@ class Words:
         if len(token.atoms) > _MAX_RUN:
             return [token]
         whole = [[_Part("name", name, 0, len(token.atoms))] for name in found]
+        if not found and not bracket and function_name(token.text, self.scope) in _INVERSE:
+            whole = [[_Part("function", token.text, 0, len(token.atoms))]]
         if not found and self._is_a_word(token, bracket):
             return [token]
         ways = [*whole, *self._split(token.atoms)]

@@ -14,6 +14,7 @@ from unicodedata import numeric
 from canon.expression.text.applied_functions import applied, constructed, is_function, with_brackets
 from canon.expression.text.differentials import PARTIAL, PRIMED, derivative, of_operator
 from canon.expression.text.factor_parser import CLOSING, FactorParser
+from canon.expression.text.open_readings import DECLARED_E, counts, is_angle, looks_like_eulers
 from canon.expression.text.quotients import divisor, ended
 from canon.expression.text.syntax import (
     Call,
@@ -26,6 +27,7 @@ from canon.expression.text.syntax import (
     Product,
     Tuple,
 )
+from canon.expression.text.vocabulary import CONSTANTS
 
 if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
@@ -87,8 +89,17 @@ class Reader(FactorParser):
 
     def after_bare(self, sign: Token) -> None:
         """Refuse a quotient that could belong to an argument without brackets: ``sin x/2``."""
-        if sign.text == "/" and self.bare_end == self.at - 1:
+        if sign.text == "/" and self.bare_end == self.at - 1 and not self.divides_sine():
             raise self.fault(*self.open_slash(), sign)
+
+    def divides_sine(self) -> bool:
+        """Tell whether a slash behind ``sin θ`` divides the sine: nobody divides an angle by a length."""
+        argument = self.tokens[self.at - 2]
+        if argument is not self.bare_start[1] or argument.kind != "name" or not is_angle(argument.text):
+            return False
+        texts = [token.text for token in self.tokens[self.at :]]
+        end = texts.index(")") if texts[0] == "(" and ")" in texts else 1
+        return any(self.scope.declares(text) and not counts(text) for text in texts[:end])
 
     def open_slash(self) -> tuple[str, str]:
         """Return the question behind a function without brackets, ``g sin θ / l``, and both its readings."""
@@ -117,9 +128,10 @@ class Reader(FactorParser):
             raise self.fault(
                 "does this still belong to the exponent?", "put a space or * before it, or brackets"
             )
-        if token.text == "|" and token.tight:
+        bars = any(earlier.text == "|" for earlier in self.tokens[: self.at])
+        if token.text == "|" and token.tight and bars and last.text != "|":
             raise self.fault("does this bar open or close?", "write Abs( ) for one of the moduli")
-        if token.tight and token.text in CLOSING and self.bare_end == self.at:
+        if token.tight and token.text in CLOSING and self.bare_end == self.at and not self.alone(last):
             raise self.fault(
                 "does this factor still belong to the argument?", "write sin(x)*(y) or sin(x*(y))"
             )
@@ -128,16 +140,19 @@ class Reader(FactorParser):
             self.no_value(token, last, factor.base if isinstance(factor, Power) else factor)
         return factor
 
+    def alone(self, last: Token) -> bool:
+        """Tell whether a function was taken of one angle that moves, which nobody multiplies inside."""
+        return last is self.bare_start[1] and is_angle(last.text) and self.scope.moves(last.text)
+
     def no_value(self, opening: Token, name: Token, inside: Node) -> None:
         """Refuse a symbol before a bracket that could be the argument of a function of that name."""
         if not (self.scope.declares(name.text) or name.primes):
             return
         moves = self.scope.moves(name.text) or name.primes > 0
-        clock = any(
-            token.text == self.scope.time.name
-            for token in self.tokens[: self.at]
-            if token.column > opening.column and token.kind == "name"
-        )
+        held = [t.text for t in self.tokens[: self.at] if t.column > opening.column and t.kind == "name"]
+        # Nothing that moves is taken at the place of another: P(q - a t) is a product, q(t - a) may be none.
+        others = any(self.scope.moves(text) for text in held if text != self.scope.time.name)
+        clock = self.scope.time.name in held and not others
         bare = isinstance(inside, Name) and not inside.primes
         clock = clock and not isinstance(inside, Name)
         if bare or isinstance(inside, Tuple) or (isinstance(inside, Number) and moves) or (moves and clock):
@@ -154,13 +169,19 @@ class Reader(FactorParser):
             raise self.fault("does this raise the function or its argument?", "write sin(x)**2 or sin(x**2)")
         if token.kind == "super":
             self.at += 1
-            return Power(base, self.raised(token), token.column)
+            return self.to_the(base, self.raised(token), token)
         if sign := self.take("**", "^"):
             self.deeper(sign)
-            node = Power(base, self.exponent(sign), sign.column)
+            node = self.to_the(base, self.exponent(sign), sign)
             self.depth -= 1
             return node
         return base
+
+    def to_the(self, base: Node, exponent: Node, sign: Token) -> Node:
+        """Return a power; code says ``e**t`` of what is declared, by hand it may be Euler's number."""
+        if sign.text != "**" and looks_like_eulers(base, exponent, self.scope):
+            raise self.fault(*DECLARED_E, sign)
+        return Power(base, exponent, sign.column)
 
     def differentiated(self, base: Node) -> Node:
         """Read ``.diff(t)`` behind what it differentiates, as in Python."""
@@ -216,7 +237,7 @@ class Reader(FactorParser):
             return node
         if (node := applied(self, token)) is not None:
             return node
-        if bracket and opening.tight:
+        if bracket and opening.tight and token.text not in CONSTANTS:
             return self.called(token)
         return Name(token.text, token.primes, token.column)
 

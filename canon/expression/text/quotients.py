@@ -52,6 +52,11 @@ def _steady(reader: FactorParser, node: Node) -> bool:
     return isinstance(node, Number)
 
 
+def _signless(node: Node) -> Node:
+    """Return a factor without the minus before it."""
+    return node.operand if isinstance(node, Negative) else node
+
+
 def ended(reader: FactorParser, factors: list[tuple[bool, Node]], starts: list[int]) -> None:
     """Refuse a factor after a quotient unless the quotient ends before it beyond doubt.
 
@@ -66,11 +71,11 @@ def ended(reader: FactorParser, factors: list[tuple[bool, Node]], starts: list[i
     below = piece[slash + 1 :]
     bracketed = below[-1].text == _CLOSING.get(below[0].text)
     tight = all(t.tight for t in piece[slash:]) and not reader.token.tight
-    over = factors[-2][1].operand if isinstance(factors[-2][1], Negative) else factors[-2][1]
+    over = _signless(factors[-2][1])
     plain = isinstance(over, Number) and isinstance(factors[-1][1], Number)
     half = isinstance(factors[-1][1], Number) and _steady(reader, over) and reader.token.text == "("
     plain = plain or half
-    steady = is_function(reader) and all(_steady(reader, node) for _, node in factors)
+    steady = is_function(reader) and all(_steady(reader, _signless(node)) for _, node in factors)
     if bracketed or (tight and (plain or steady)):
         return
     shown = reader.text[piece[0].column - 1 : reader.token.column - 1].strip()

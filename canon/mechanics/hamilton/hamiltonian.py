@@ -10,7 +10,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.cached_property import cached_property
-from canon.expression.symbols.symbol import momentum, time, velocity
+from canon.expression.symbols.symbol import Rate, momentum, time, velocity
 from canon.expression.symbols.user_input import counted, given_kind
 from canon.mechanics.algebra.all_vanish import having_values
 from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain, plain_all, plain_places
@@ -56,6 +56,11 @@ class Hamiltonian:
     t
         The time.
 
+    Raises
+    ------
+    ValueError
+        Where the variables are not as many momenta as coordinates, all different, or H holds velocities.
+
     Examples
     --------
     >>> from canon import coordinates, parameters
@@ -88,6 +93,12 @@ class Hamiltonian:
         if len({*self.q, *self.p}) < 2 * len(self.q):
             raise ValueError(
                 f"the variables {(*self.q, *self.p)} are not all different; each needs a symbol of its own"
+            )
+        rates = sorted(s.name for s in self.H.free_symbols if isinstance(s, Rate) and s not in self.p)
+        if rates:
+            raise ValueError(
+                f"H holds {', '.join(rates)}, and is a function of coordinates and momenta; write it in "
+                f"{', '.join(map(str, self.p))}, or take it from a Lagrangian, Lagrangian(L, q).hamiltonian()"
             )
 
     @cached_property

@@ -75,6 +75,12 @@ class ConstrainedLagrangian:
             constraints = tuple(plain(f, lagrangian.q, lagrangian.t) for f in as_tuple(given))
             object.__setattr__(self, name, constraints)
         v = [velocity(s) for s in lagrangian.q]
+        for f in (*self.holonomic, *self.nonholonomic):
+            if not f.has(*lagrangian.q, *v):
+                said = "is true anyway" if f == 0 else "restricts nothing that moves"
+                raise ValueError(
+                    f"the constraint {f} = 0 {said}; give a function of {lagrangian.q} that vanishes"
+                )
         for f in self.holonomic:
             if f.has(*v):
                 raise ValueError(f"{f} = 0 holds velocities; give it as a nonholonomic constraint")

@@ -7,7 +7,7 @@ neighbours in the chain, so that a wrong sign in it is seen; what is made of fun
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
@@ -27,6 +27,8 @@ __all__ = ["GivenFunctions", "key_at"]
 
 _LONGEST = 200
 """Characters of a side that is looked at."""
+_BY_LETTER = ("L", "H", "V", "L1", "L2")
+"""Functions of a claim that people put into formulas by their letters; F is too often a force."""
 _TERM = re.compile(
     r"(?P<sign>[-+]?)(?:"
     r"(?P<rate>\(?d/dt\)?)?(?P<open>\(?)∂(?P<of>[A-Z])/∂(?P<by>[^-+=∂(){}\[\]/*]{1,20})(?P<close>\)?)"
@@ -76,6 +78,8 @@ class GivenFunctions:
         """Return the equation of a side with another one, none where it is an identity; None where it is not given."""
         made = self.worked_out(side.said)
         if made is None:
+            made = self.put_in(side.text)
+        if made is None:
             return None
         try:
             right = parse_expression(near.text, self.scope)
@@ -106,12 +110,40 @@ class GivenFunctions:
             place = term.end()
         return total
 
+    def put_in(self, text: str) -> Expr | None:
+        """Return a side in which functions stand by their letters, ``p θ̇ - L``; None where none that is given does.
+
+        Examples
+        --------
+        >>> from canon.expression import Scope, parse_expression
+        >>> GivenFunctions({"L": "v**2/2"}, "R", Scope({"v": sp.Symbol("v")})).put_in("-L")
+        -v**2/2
+        """
+        names = {name: sp.Dummy(name, real=True) for name in _BY_LETTER if self._gives(name)}
+        if not names or len(text.strip()) > _LONGEST:
+            return None
+        try:
+            said = parse_expression(text, replace(self.scope, names={**self.scope.names, **names}))
+            put = {
+                symbol: parse_expression(self.keys[name], self.scope)
+                for name, symbol in names.items()
+                if said.has(symbol)
+            }
+        except LanguageError:
+            return None
+        found = said.xreplace(put) if put else None
+        return found if isinstance(found, sp.Expr) else None
+
+    def _gives(self, letter: str) -> bool:
+        """Whether a letter stands for a function that the claim gives."""
+        undeclared = not self.scope.declares(letter) and letter not in self.scope.functions
+        return letter != self.asked and isinstance(self.keys.get(letter), str) and undeclared
+
     def _value(self, term: re.Match[str]) -> Expr | None:
         letter = term["of"] or term["second"]
-        text = self.keys.get(letter)
-        if letter == self.asked or not isinstance(text, str) or self.scope.declares(letter):
+        if not self._gives(letter):
             return None
-        function = parse_expression(text, self.scope)
+        function = parse_expression(self.keys[letter], self.scope)
         if term["second"]:
             return self._bracket(parse_expression(term["first"], self.scope), function)
         symbol = parse_expression(term["by"], self.scope)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from canon.expression.text.scope import Scope
 
-__all__ = ["Measure", "measure_of", "unit_behind"]
+__all__ = ["Measure", "measure_like", "measure_of", "unit_behind"]
 
 _PREFIXES = {"": 0, "T": 12, "G": 9, "M": 6, "k": 3, "h": 2, "d": -1, "c": -2, "m": -3, "µ": -6, "μ": -6, "u": -6,
              "n": -9, "p": -12}  # fmt: skip
@@ -39,6 +39,15 @@ _PLAIN: Mapping[str, tuple[Expr, tuple[int, ...]]] = {
     "rev": (2 * sp.pi, ()), "rpm": (sp.pi / 30, (0, 0, -1)), "t": (Rational(1000), (0, 1)),
     "au": (Rational(149597870700), (1,)),
 }  # fmt: skip
+_BESIDE = ("kg", "kW", "kV", "mA", "Pa", "Hz", "m", "s", "N", "J", "W", "A", "V", "T", "K", "C")
+"""Units that are typed without a gap before another one: ``Nm``, ``kgm²``, ``Js``, ``kWh``."""
+_WORDS: Mapping[str, str] = {
+    "meter": "m", "metre": "m", "second": "s", "sec": "s", "kilogram": "kg", "gram": "g", "newton": "N", "joule": "J",
+    "watt": "W", "hertz": "Hz", "pascal": "Pa", "radian": "rad", "degree": "deg", "minute": "min", "hour": "h",
+    "hr": "h", "day": "d", "kelvin": "K", "ampere": "A", "volt": "V", "coulomb": "C", "tesla": "T", "ohm": "Ω",
+    "revolution": "rev", "turn": "rev", "percent": "%", "kilometer": "km", "kilometre": "km",
+}  # fmt: skip
+"""Units by their names, in singular."""
 _COUNTED_IN = {"angles": ("rad", "deg", "°"), "turns": ("rev", "rpm")}
 """Units without a dimension that frequencies are counted in."""
 _MOST = 80
@@ -51,6 +60,15 @@ _SYMBOL = re.compile(
     re.DOTALL,
 )
 _SMALL = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
+_SIUNITX = re.compile(
+    r"\\(?:SI|qty)\s*\{(?P<number>[^{}]{1,60})\}\s*\{(?P<unit>[^{}]{1,80}(?:\{[^{}]{0,5}\}[^{}]{0,20}){0,4})\}\s*\$?\s*$"
+)
+_MACRO = re.compile(r"\\([A-Za-z]+)\s*")
+_MACROS: Mapping[str, str] = {
+    **{name: f"{symbol} " for name, symbol in _WORDS.items()},
+    "per": "/", "squared": "^2 ", "cubed": "^3 ", "kilo": "k", "milli": "m", "centi": "c", "micro": "µ",
+    "mega": "M", "giga": "G", "nano": "n",
+}  # fmt: skip
 _LATEX = re.compile(
     r"\\(?:mathrm|text|textrm|rm|si|unit|operatorname|,|;|:|!| )|\\(?=%)|[{}$~]|\\[lr]?(?:brack)?(?![A-Za-z])"
 )
@@ -59,6 +77,10 @@ _BEHIND = re.compile(
     rf"(?<=[0-9.)\s°%}}])(?P<unit>\(?{_UNIT}\)?(?:\s?[*·⋅/]\s?\(?{_UNIT}\)?|\s\(?{_UNIT}\)?){{0,5}}|1?/{_UNIT})\s*$"
 )
 _IN_BRACKET = re.compile(r"\[(?P<unit>[^\[\]]{1,80})\]\s*$")
+_SPACED = re.compile(
+    r"(?:\\[,;:! ]|~|\{?\s*\\rm(?![A-Za-z])\s*\{?\s*){1,5}"
+    rf"(?P<unit>{_UNIT}(?:(?:\s|\\[,;:! ]|~|\\cdot|/){{1,3}}{_UNIT}){{0,4}})\s*\}}?\s*\$?\s*$"
+)
 _UPRIGHT = re.compile(
     r"(?P<unit>(?:\\(?:mathrm|text|textrm|si|unit)\s?\{[^{}]{0,40}(?:\{[^{}]{0,5}\}[^{}]{0,20}){0,4}\}"
     r"(?:\^\{?-?[0-9]\}?)?(?:\s|\\[,;:! ]|\\cdot|/)*){1,4}|\^\{?\\circ\}?|\\%|\\degree)\s*\$?\s*$"
@@ -111,9 +133,10 @@ def measure_of(unit: str) -> Measure | None:
     """
     if len(unit) > _MOST:
         return None
-    named = _named_powers(_without_latex(unit))
-    if named is None:
+    written = _named_powers(_without_latex(unit))
+    if written is None:
         return None
+    named = [part for name, power in written for part in _apart(name, power)]
     factor, powers = sp.S.One, [0] * len(_BASE)
     for name, power in named:
         one = _one(name)
@@ -124,6 +147,34 @@ def measure_of(unit: str) -> Measure | None:
     hertz = sum(power for name, power in named if name.endswith("Hz"))
     counted = [what for what, units in _COUNTED_IN.items() if any(name.endswith(units) for name, _ in named)]
     return Measure(factor, tuple(powers), hertz, counted[0] if counted else "")
+
+
+def measure_like(unit: str, asked: Measure) -> Measure | None:
+    """Return what a unit measures, ``ms⁻¹`` being metres a second where such a unit is asked for.
+
+    Examples
+    --------
+    >>> measure_like("ms^-2", measure_of("m/s^2")) == measure_of("m/s^2"), measure_like("ms", measure_of("s")).factor
+    (True, 1/1000)
+    """
+    found = measure_of(unit)
+    if found is None or found.powers == asked.powers:
+        return found
+    beside = measure_of(re.sub(r"(?<![A-Za-z])ms(?=\s*[\^⁻*({])", "m s", unit))
+    return beside if beside is not None and beside.powers == asked.powers else found
+
+
+def _apart(name: str, power: int) -> list[tuple[str, int]]:
+    """Return the units that are typed as one word, each with its power; ``kgm²`` is kg m²."""
+    word = name.lower() if len(name) > 3 else name
+    name = _WORDS.get(word, _WORDS.get(word.removesuffix("s"), name) if len(name) > 3 else name)
+    if _one(name) is not None:
+        return [(name, power)]
+    for first in _BESIDE:
+        rest = name.removeprefix(first)
+        if rest != name and rest in (*_BESIDE, "h", "rad"):
+            return [(first, 1 if power > 0 else -1), (rest, power)]
+    return [(name, power)]
 
 
 def _without_latex(unit: str) -> str:
@@ -173,6 +224,23 @@ def _one(name: str) -> tuple[Expr, tuple[int, ...]] | None:
     return None
 
 
+def _of_macros(unit: str) -> str:
+    r"""Return a unit without siunitx's macros, ``\kilo\metre\per\hour`` as ``km /h``.
+
+    Examples
+    --------
+    >>> _of_macros(r"\kilo\metre\per\second\squared"), _of_macros("m.s^{-2}")
+    ('km /s ^2 ', 'm*s^{-2}')
+    """
+    return _MACRO.sub(lambda found: _MACROS.get(found[1], f"{found[1]} "), unit).replace(".", "*")
+
+
+def _closed(begins: str, text: str) -> str:
+    """Return the beginning of a text with blanks behind it, and the dollar that closes the text."""
+    closing = "$" if text.rstrip().endswith("$") else ""
+    return begins + " " * (len(text) - len(begins) - len(closing)) + closing
+
+
 def unit_behind(text: str, scope: Scope) -> tuple[str, str]:
     r"""Return a text with blanks in place of the unit at its end, and that unit; letters that are declared are none.
 
@@ -182,15 +250,21 @@ def unit_behind(text: str, scope: Scope) -> tuple[str, str]:
     >>> unit_behind("36 km/h", Scope()), unit_behind(r"$2\,\mathrm{m}$", Scope()), unit_behind("2*pi", Scope())
     (('36     ', 'km/h'), ('$2           $', '\\mathrm{m}'), ('2*pi', ''))
     """
-    for pattern in (_IN_BRACKET, _UPRIGHT, _BEHIND) if len(text) <= _LONGEST else ():
+    if packed := _SIUNITX.search(text):
+        inside = text[: packed.start()] + " " * (packed.start("number") - packed.start()) + packed["number"]
+        return _closed(inside, text), _of_macros(packed["unit"])
+    latex = (_SPACED,) if text.lstrip().startswith("$") else ()
+    for pattern in (_IN_BRACKET, _UPRIGHT, *latex, _BEHIND) if len(text) <= _LONGEST else ():
         found = pattern.search(text)
         while found is not None and measure_of(found["unit"]) is None:
             found = pattern.search(text, found.start() + 1)
         if found is None:
             continue
         letters = re.findall(r"[A-Za-zΩµμ]+", found["unit"])
-        if pattern is _BEHIND and any(x in scope.functions or scope.declares(x) for x in letters):
+        if pattern in (_BEHIND, _SPACED) and any(x in scope.functions or scope.declares(x) for x in letters):
             continue
+        if pattern is _SPACED:
+            return _closed(text[: found.start()], text), found["unit"].strip()
         blanked = text[: found.start("unit")] + " " * (found.end("unit") - found.start("unit"))
         ending = text[found.end("unit") :].replace("]", " ")
         if pattern is _IN_BRACKET:

@@ -1,0 +1,62 @@
+"""Open readings: which letters are angles or counts, and whether an e that is declared stands for Euler's number.
+
+Nobody takes the sine of an angle over a length, so ``g sin θ/l`` has one reading; ``sin θ/2`` has two.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from canon.expression.text.syntax import Name, Node, parts
+
+if TYPE_CHECKING:
+    from canon.expression.text.scope import Scope
+
+__all__ = ["DECLARED_E", "counts", "is_angle", "looks_like_eulers"]
+
+_ANGLES = ("theta", "vartheta", "phi", "varphi", "psi", "th", "ph")
+"""Letters that are angles in any book."""
+_COUNTS = ("n", "N", "k", "i", "j")
+"""Letters that count, so that an angle is divided by them."""
+DECLARED_E = (
+    "is e here what was declared, or Euler's number?",
+    "write exp( ) for Euler's number, e**( ) for the other, or declare another letter",
+)
+"""Question and remedy."""
+
+
+def is_angle(name: str) -> bool:
+    """Tell whether a name is that of an angle.
+
+    Examples
+    --------
+    >>> is_angle("theta_0"), is_angle("phi1"), is_angle("x")
+    (True, True, False)
+    """
+    return _stem(name) in _ANGLES
+
+
+def counts(name: str) -> bool:
+    """Tell whether a name is that of a whole number."""
+    return _stem(name) in _COUNTS
+
+
+def looks_like_eulers(base: Node, exponent: Node, scope: Scope) -> bool:
+    """Tell whether a power of a declared e could be meant for Euler's: one whose exponent moves or is imaginary.
+
+    Examples
+    --------
+    >>> from canon.expression.text.scope import Scope
+    >>> from sympy import Symbol
+    >>> looks_like_eulers(Name("e", 0, 1), Name("t", 0, 3), Scope({"e": Symbol("e")}))
+    True
+    """
+    if not (isinstance(base, Name) and base.text == "e" and not base.primes and scope.declares("e")):
+        return False
+    names = [part for part in parts(exponent) if isinstance(part, Name)]
+    imaginary = any(name.text == "I" and not scope.declares("I") for name in names)
+    return imaginary or any(name.primes or scope.moves(name.text) for name in names)
+
+
+def _stem(name: str) -> str:
+    return name.partition("_")[0].rstrip("0123456789")
