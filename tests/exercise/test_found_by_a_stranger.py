@@ -117,6 +117,24 @@ def test_starts_and_parameters_of_the_wrong_kind_are_told() -> None:
         propagate(lambda t, z: -z, (0, 1), [1], args=(0.3,))
 
 
+def test_functions_in_another_order_are_told() -> None:
+    def odeint(z: object, t: object) -> object:
+        return [z[1], -z[0]]
+
+    with pytest.raises(TypeError, match=r"f\(z, t\) has the order of SciPy's odeint"):
+        propagate(odeint, (0, 1), [1, 0])
+    with pytest.raises(TypeError, match="put values of k in"):
+        propagate(lambda t, z, k: -k * z, (0, 1), [1])
+    assert abs(propagate(lambda t, z, k=2: -k * z, (0, 1), [1], samples=2).y[0, -1] - np.exp(-2.0)) < 1e-14
+    assert abs(propagate(lambda time, t: -t, (0, 1), [1], samples=2).y[0, -1] - np.exp(-1.0)) < 1e-14
+
+
+@pytest.mark.parametrize("pairs", [[(x, y), (y, -x)], {x: y, y: -x}])
+def test_pairs_of_sympy_are_told_where_they_go(pairs: object) -> None:
+    with pytest.raises(TypeError, match=r"write canon.VectorField\(rates, variables\)"):
+        propagate(pairs, (0, 1), [1, 0])
+
+
 ROUTH = {
     "kind": "routhian", "q": ["r", "phi"], "L": "m*(r_dot**2 + r**2*phi_dot**2)/2 - k*r**2/2", "cyclic": ["phi"],
     "momenta": ["l"], "convention": "pq-L", "parameters": {"m": "positive", "k": "positive"},
@@ -211,8 +229,6 @@ def test_what_constrains_nothing_is_refused(constraint: str) -> None:
 
 
 def test_a_hamiltonian_holds_no_velocities() -> None:
-    with pytest.raises(
-        ValueError, match=r"H holds x_dot, .* write it in p_x"
-    ):
+    with pytest.raises(ValueError, match=r"H holds x_dot, .* write it in p_x"):
         Hamiltonian(x.dot**2 / 2, [x], [x.momentum])
     assert Hamiltonian(x.momentum**2 / 2, [x], [x.momentum]).q_dot == (x.momentum,)

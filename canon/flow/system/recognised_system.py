@@ -143,6 +143,11 @@ def recognised(system: Any) -> RecognisedSystem:
             f"{system!r} does not say how many variables it has: give canon.mechanics.field_of_function(f, n), which "
             "reads a function f(t, y) of n variables as a vector field"
         )
+    if isinstance(system, list | tuple | dict):
+        raise TypeError(
+            "a list or a table of rates is no system that can be propagated: "
+            "write canon.VectorField(rates, variables), the rates in the order of the variables"
+        )
     raise TypeError(
         f"{system!r} is no system that can be propagated: give a Hamiltonian, a Lagrangian with its forces and "
         "constraints, Gibbs–Appell or Newton–Euler equations, a Routhian, a vector field, a Poisson system, a scene or "

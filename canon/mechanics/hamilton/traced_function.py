@@ -6,6 +6,7 @@ formulas, so that Taylor's method, every precision and the error estimates apply
 
 from __future__ import annotations
 
+import inspect
 import math
 from collections.abc import Mapping
 from fractions import Fraction
@@ -28,6 +29,7 @@ __all__ = ["field_of_function", "is_rates_function", "read_at_start"]
 _NEAR = 1e-9
 """In parts of their size: how far formulas may be from what the function returns at the start, for rounding."""
 
+_CLOCKS = ("t", "time", "tau")
 _READABLE = (
     "it is called once with symbols, so that arithmetic and NumPy's functions of numbers are what it may use, and "
     "numpy.zeros_like(y) for its rates, no math.sin, no if, no table, no numpy.linalg.solve; write such equations as "
@@ -59,7 +61,8 @@ def field_of_function(f: Callable[[Any, Any], Any], n: int) -> VectorField:
     Raises
     ------
     TypeError
-        The function asks for numbers: it branches by them, or calls what is none of NumPy's functions.
+        The function asks for numbers: it branches by them, or calls what is none of NumPy's functions; or it takes
+        other arguments, or the time last.
     ValueError
         It returns another number of rates.
 
@@ -69,6 +72,7 @@ def field_of_function(f: Callable[[Any, Any], Any], n: int) -> VectorField:
     >>> field_of_function(lambda t, y: [y[1], -4 * numpy.sin(y[0]) + numpy.cos(2 * t)], 2).components
     (y_1, -4*sin(y_0) + cos(2*t))
     """
+    _refuse_other_arguments(f)
     variables = sp.symbols(f"y_:{n}", real=True, seq=True)
     state = np.empty(n, dtype=object)
     state[:] = [_Traced(s) for s in variables]
@@ -116,6 +120,27 @@ def read_at_start(f: Callable[[Any, Any], Any], t0: float, y0: Any) -> VectorFie
             f"at the start f(t, y) returns {returned.tolist()}, read as formulas {told}: {_READABLE}"
         )
     return field
+
+
+def _refuse_other_arguments(f: Callable[..., Any]) -> None:
+    """Refuse a function of other arguments than f(t, y), as far as it says which it takes."""
+    try:
+        taken = inspect.signature(f).parameters.values()
+    except (TypeError, ValueError):  # a function of C says nothing
+        return
+    positional = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    names = [a.name for a in taken if a.kind in positional and a.default is inspect.Parameter.empty]
+    if len(names) > 2:
+        others = ", ".join(names[2:])
+        raise TypeError(
+            f"the function takes {', '.join(names)}, and f(t, y) is called: put values of {others} in, "
+            f"lambda t, y: f(t, y, {others}), as args= does in SciPy"
+        )
+    if len(names) == 2 and names[1] in _CLOCKS and names[0] not in _CLOCKS:
+        raise TypeError(
+            f"f({names[0]}, {names[1]}) has the order of SciPy's odeint: here the time comes first, as in solve_ivp; "
+            f"give lambda t, y: f(y, t)"
+        )
 
 
 def _real_numbers(given: Any, what: str) -> Array:
