@@ -2,6 +2,8 @@
 
 python docs/scenes/make.py            # all of it, about two minutes
 python docs/scenes/make.py kepler     # the pictures of some scenes only
+
+Some scenes are shown in motion too, four seconds long; the page loads an animation when it is asked for.
 """
 
 from __future__ import annotations
@@ -12,7 +14,7 @@ from typing import TYPE_CHECKING
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from canon.plot.scene import plot_scene
+from canon.plot.scene import animate_scene, plot_scene
 from canon.scene import SCENES
 from canon.scene.describe import description
 from canon.scene.known_truths import check, conserved
@@ -28,6 +30,15 @@ LONGEST = 700
 """Formulas whose LaTeX is longer are left to ``canon scene NAME --latex --all``."""
 MANY = 6
 PERIODS = 1000.0
+IN_MOTION = {
+    "simple-pendulum": 1.0, "spring-pendulum": 4.0, "spherical-pendulum": 4.0, "double-pendulum": 3.0,
+    "swinging-atwood": 3.0, "cart-pendulum": 3.0, "sliding-mass-pendulum": 3.0, "bead-hoop": 2.0, "piston-engine": 2.0,
+    "kepler": 1.0, "figure-eight": 1.0, "restricted-three-body": 1.0, "henon-heiles": 6.0,
+}  # fmt: skip
+"""Scenes that are shown in motion, and for how many periods."""
+MOVING_SIZE = (320, 256)
+COLOURS_KEPT = 16
+"""Colours of an animation: lines on white need no more."""
 PROOFS_LEFT_OUT = {"outer-solar-system"}
 """Proofs of minutes; tests/scene has them."""
 
@@ -71,6 +82,31 @@ def draw(scene: Scene) -> None:
     figure.set_size_inches(4.0, 3.2)
     figure.savefig(HERE / f"{scene.name}.png", dpi=75)
 
+    if scene.name in IN_MOTION:
+        set_in_motion(scene)
+
+
+def set_in_motion(scene: Scene) -> None:
+    """Write the animation of a scene, in few colours."""
+    from PIL import Image, ImageSequence
+
+    file = HERE / f"{scene.name}.gif"
+    animate_scene(run(scene, periods=IN_MOTION[scene.name], samples=600), file, seconds=4.0, rate=12)
+    with Image.open(file) as whole:
+        frames = [
+            frame.convert("RGB").resize(MOVING_SIZE).quantize(COLOURS_KEPT)
+            for frame in ImageSequence.Iterator(whole)
+        ]
+    frames[0].save(file, save_all=True, append_images=frames[1:], duration=1000 // 12, loop=0, optimize=True)
+
+
+def moving(scene: Scene) -> list[str]:
+    """Return the animation of a scene behind a word to open, so that nothing moves unasked."""
+    if scene.name not in IN_MOTION:
+        return []
+    picture = f"![{scene.name} in motion](scenes/{scene.name}.gif)"
+    return ["<details><summary>in motion</summary>", "", picture, "", "</details>", ""]
+
 
 def row(scene: Scene, checks: tuple[Check, ...]) -> str:
     along, met = split(scene, checks)
@@ -88,6 +124,7 @@ def split(scene: Scene, checks: tuple[Check, ...]) -> tuple[list[Check], list[Ch
 
 def section(scene: Scene, checks: tuple[Check, ...]) -> str:
     lines = [f"## {scene.name}", "", f"{scene.title}.", "", f"![{scene.name}](scenes/{scene.name}.png)", ""]
+    lines += moving(scene)
     if scene.parameters:
         lines += ["| parameter | value | |", "|---|---|---|"]
         lines += [
