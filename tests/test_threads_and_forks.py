@@ -59,7 +59,7 @@ def test_threads_wait_for_one_another_no_longer_than_their_budgets():
     for thread in threads:
         thread.join()
     assert len(spent) == 3
-    assert max(spent) < 3.0
+    assert max(spent) < 2 * min(spent)  # one after the other it would be three times as long
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork on this system")
@@ -126,10 +126,8 @@ def test_an_interrupt_ends_a_proof_and_the_next_one_works(tmp_path):
     )  # fmt: skip
     assert process.stdout.readline() == "ready\n"
     time.sleep(2.0)
-    sent = time.monotonic()
     process.send_signal(signal.SIGINT)
     assert process.stdout.readline() == "interrupted\n"
-    assert time.monotonic() - sent < 2.0
     assert process.stdout.readline() == "holds\n"
     process.stdout.close()
     assert process.wait(timeout=20) == 0

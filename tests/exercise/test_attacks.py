@@ -172,16 +172,16 @@ def test_a_killed_worker_leaves_no_process_behind():
     pytest.fail("the process of the proofs goes on")
 
 
-def test_leaving_early_stops_the_workers():
+def test_leaving_early_stops_the_workers(processor_seconds):
     slow = [
         Claim(f"c{i}", "equality-only", {**GOOD, "lhs": f"sin(x)**{40 + i}*exp(x)**99"}, budget=60.0)
         for i in range(4)
     ]
-    start = time.monotonic()
+    used = processor_seconds()
     for judgement in judged([claim_from(GOOD), *slow], jobs=2):
         assert judgement.status == "holds"
         break
-    assert time.monotonic() - start < 30.0
+    assert processor_seconds() - used < 30.0
 
 
 DEEP = r"\frac{1}{" * 60 + "x" + "}" * 60
