@@ -107,6 +107,17 @@ class Deadline:
         return max(LEAST, (self.seconds - self.start.since(now)) * self.start.slowness(now))
 
     @property
+    def worked_off(self) -> bool:
+        """Whether its seconds of work are spent; a busy clock alone does not spend them.
+
+        Examples
+        --------
+        >>> Deadline.after(10.0).worked_off, Deadline(Worked(0.0, 0.0), 0.0).worked_off
+        (False, True)
+        """
+        return self.start.since(Worked.now()) > self.seconds
+
+    @property
     def over(self) -> bool:
         """Whether what found nothing until now may have been ended by the seconds, those of a busy clock included.
 

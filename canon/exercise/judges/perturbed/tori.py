@@ -8,7 +8,6 @@ such as the librations and rotations of a pendulum, it must be narrowed.
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations, islice
@@ -20,7 +19,7 @@ from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
 from canon.exercise.judges.canonical import canonical_parts
-from canon.exercise.question.deadline import PROOF_SECONDS
+from canon.exercise.question.deadline import PROOF_SECONDS, Deadline
 from canon.exercise.question.question import Part, Question, Same, Stated
 from canon.expression.symbols.user_input import counted
 from canon.frozen_mapping import FrozenMapping
@@ -312,7 +311,7 @@ def _kept_tori(
         Where H does not separate, no bounded motions were found in the time of the claim, or the formula is another one
         in parts of the domain.
     """
-    ends = time.monotonic() + budget
+    deadline = Deadline.after(budget)
     frozen = _frozen(energy, (*q, *p))
     still = Hamiltonian(exchanged(energy, frozen), q, p, t)
     there = Domain(tuple(cast("Boolean", c.xreplace(frozen)) for c in conditions), FrozenMapping(dict(box)))
@@ -322,8 +321,8 @@ def _kept_tori(
         raise Undecided(f"actions are known where the Hamilton–Jacobi equation separates; {reason}") from None
     try:
         # A box is a hint only: what holds there must hold on the rest of the domain too.
-        compared = list(islice(_bounded(integral, Domain(there.conditions), ends), COMPARED))
-        found = list(islice(_bounded(integral, there, ends), TORI)) if there.box else compared[:TORI]
+        compared = list(islice(_bounded(integral, Domain(there.conditions), deadline), COMPARED))
+        found = list(islice(_bounded(integral, there, deadline), TORI)) if there.box else compared[:TORI]
     except NotHolomorphicError as reason:
         raise Undecided(f"no quadrature of this H is certified: {reason}") from None
     if len(found) < TORI:
@@ -351,7 +350,7 @@ def _frozen(H: Expr, state: Sequence[Symbol]) -> dict[Expr, Expr]:
     return {f: Symbol(f"{f.func}_{i}", real=True, positive=f.is_positive) for i, f in enumerate(functions)}
 
 
-def _bounded(integral: CompleteIntegral, domain: Domain, ends: float) -> Iterator[ActionVariables]:
+def _bounded(integral: CompleteIntegral, domain: Domain, deadline: Deadline) -> Iterator[ActionVariables]:
     """Yield tori through points of a domain, where there are bounded motions.
 
     Raises
@@ -362,7 +361,7 @@ def _bounded(integral: CompleteIntegral, domain: Domain, ends: float) -> Iterato
     H = integral.H
     symbols = {s for s in H.H.free_symbols if isinstance(s, Symbol)} | {*H.q, *H.p}
     for point in domain.points(symbols, POINTS):
-        if time.monotonic() > ends:
+        if deadline.worked_off:
             raise Undecided(
                 "actions all over the domain were not found in the budget; give a larger one, or narrow the domain"
             )
