@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from canon.exercise.question.answer import links, other_variables
@@ -13,8 +14,10 @@ from canon.exercise.question.deadline import Deadline, Worked
 from canon.exercise.question.question import Determines, Question, Stated, Tells, decide
 from canon.exercise.sheet.key_shapes import faults
 from canon.exercise.sheet.kind import named_function
+from canon.exercise.sheet.quantities.given_functions import key_at
 from canon.exercise.sheet.reading import InvalidClaim, Reading
 from canon.exercise.sheet.sheet import Claim, ClaimError
+from canon.expression.parse import LanguageError, parse_expression
 from canon.expression.symbols.user_input import NotFiniteError, given_kind
 from canon.mechanics.algebra.constraint_manifold import EmptyDomainError
 from canon.mechanics.algebra.linear import SingularMatrixError
@@ -23,6 +26,8 @@ from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict, all
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+_ONE_VALUE = ("energy_rate", "T", "values", "force")
+"""Keys whose answers are values, equal on the motion or on the constraints if both are right."""
 __all__ = ["Finding", "InvalidClaim", "examine", "examined", "judge", "questions"]
 
 
@@ -65,7 +70,20 @@ def questions(reading: Reading) -> Iterator[Question]:
     for question in judge_of_kind(reading, **inside):
         asked = isinstance(question, Determines)
         yield replace(question, wanted=reading.complete) if asked else question
-    yield from links(reading)
+    yield from links(reading, partial(_with_side, reading))
+
+
+def _with_side(reading: Reading, place: str, text: str) -> Iterator[Question]:
+    """Yield what a claim comes down to with another side of a chain as its answer; nothing where that can't be one.
+
+    Only of answers that have one value on every motion: two constants of the motion need not be equal.
+    """
+    if key_at(place) not in _ONE_VALUE:
+        return
+    with suppress(InvalidClaim, LanguageError):
+        side = parse_expression(text, reading.scope)
+        judge_of_kind = named_function("canon.exercise.judges", reading.kind.judge)
+        yield from judge_of_kind(reading.with_instead(place, side))
 
 
 def judge(claim: Claim) -> Verdict:

@@ -66,7 +66,7 @@ def how_read(asked: Mapping[str, Any]) -> dict[str, Any]:
         links = [] if plain is None else plain.links
         shown = [
             statement
-            for place, text in (*_texts(key or "text", value), *links)
+            for place, text in (*_texts(key or "text", value), *((link.place, link.text) for link in links))
             for statement in _statements(place, text, written)
         ]
         warnings = [] if plain is None else [*plain.passed, *written.warnings]

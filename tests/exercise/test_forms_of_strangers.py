@@ -99,14 +99,22 @@ def test_a_gap_before_the_last_factor_is_asked_about(form):
 @pytest.mark.parametrize(
     ("form", "readings"),
     [
-        ("θ'' + g sin θ / l = 0", r"sin\(θ\)/l or sin\(θ/l\)"),
-        ("m θ'' + m g sinθ/l = 0", r"sin\(θ\)/l or sin\(θ/l\)"),
-        (r"\ddot\theta + g\sin\theta / l = 0", r"sin\(theta\)/l or sin\(theta/l\)"),
+        ("θ'' + g sin l / m = 0", r"sin\(l\)/m or sin\(l/m\)"),
+        ("m θ'' + m g sinθ/2 = 0", r"sin\(θ\)/2 or sin\(θ/2\)"),
+        (r"\ddot\theta + g\sin\theta / 2 = 0", r"sin\(theta\)/2 or sin\(theta/2\)"),
     ],
 )
 def test_a_slash_behind_a_bare_argument_is_asked_about_with_both_readings(form, readings):
     with pytest.raises(InvalidClaim, match=readings):
         equation(form, PENDULUM)
+
+
+@pytest.mark.parametrize(
+    "form", ["θ'' + g sin θ / l = 0", "m θ'' + m g sinθ/l = 0", r"\ddot\theta + g\sin\theta / l = 0"]
+)
+def test_nobody_divides_an_angle_by_a_length(form):
+    assert equation(form, PENDULUM) == "holds"
+    assert equation(form.replace("+", "-"), PENDULUM) == "fails"
 
 
 ONE, BOTH = r"\begin{bmatrix}x\\0\end{bmatrix}", r"\begin{pmatrix}x\\y\end{pmatrix}"

@@ -46,14 +46,22 @@ def reaction(reading: Reading) -> Iterator[Question]:
     if not reading.has("values") and _force_is_the_rest(reading, constraints, multipliers):
         check_not_empty(constraints, q, reading.domain, reading.time)
         yield Verdict(Status.HOLDS, "the forces of constraint", "exact")
+        yield Determines(lambda: stay_open(_held(reading, multipliers)))
         return
     values = reading.table("values") if reading.has("values") else {}
     claimed = reading.expressions("force", like="q") if reading.has("force") else ()
     for motion in _motions(reading, constraints, multipliers, (*values.values(), *claimed)):
         parts = (*_of_multipliers(reading, motion, values), *_of_forces(motion, q, claimed))
         yield Same(parts, motion.branch.domain, lambda parts=parts: _answer(parts))
-    if not claimed:
-        yield Determines(lambda: stay_open([s for s in multipliers if s.name not in values]))
+    left = _held(reading, multipliers) if claimed else [s for s in multipliers if s.name not in values]
+    yield Determines(lambda: stay_open(left))
+
+
+def _held(reading: Reading, multipliers: Sequence[Symbol]) -> list[Symbol]:
+    """Return the multipliers that claimed forces hold without a value: they stay open."""
+    claimed = reading.expressions("force", like="q") if reading.has("force") else ()
+    known = reading.claim.keys.get("values", {})
+    return [s for s in multipliers if s.name not in known and any(force.has(s) for force in claimed)]
 
 
 def _part(motion: MotionOnManifold, name: str, claimed: Expr, right: Expr, key: str) -> Part:

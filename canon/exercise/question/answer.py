@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
 from canon.exercise.question.deadline import SIDE_SECONDS
-from canon.exercise.question.question import Chain, Part, fails
+from canon.exercise.question.question import Chain, Part, Question, fails
 from canon.exercise.sheet.kind import Shape
 from canon.expression.symbols.symbol import Coordinate, Rate, velocity
 from canon.expression.symbols.user_input import counted
@@ -16,7 +17,7 @@ from canon.proof.domain.verdict import Undecided
 from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from sympy import Expr, Symbol
 
@@ -85,14 +86,14 @@ def _texts(key: str, shape: Shape, value: Any) -> list[tuple[str, Any]]:
     return [(key, value)]
 
 
-def links(reading: Reading) -> Iterator[Chain]:
+def links(reading: Reading, answers: Callable[[str, str], Iterator[Question]]) -> Iterator[Chain]:
     """Yield the question whether the sides of each chain are the same, some variables following others."""
     through = _following(reading) if reading.links else {}
-    for place, text in reading.links:
+    for place, text, left in reading.links:
         part = Part(f"the chain under {place}", reading.equation(place, text), through=through)
         shown = " ".join(text.replace("=", " = ").split())
         said = f"two sides under {place} that are said to be equal are not: {shown}"
-        yield Chain(part, reading.domain, said)
+        yield Chain(part, reading.domain, said, partial(answers, place, left))
 
 
 def _following(reading: Reading) -> dict[Symbol, Expr]:
@@ -101,8 +102,12 @@ def _following(reading: Reading) -> dict[Symbol, Expr]:
         L, names = reading.expression("L"), ("cyclic", "momenta") if reading.has("cyclic") else ("q", "p")
         q, p = reading.phase_space(*names)
         return {momentum: L.diff(velocity(x)) for x, momentum in zip(q, p, strict=True)}
+    if reading.has("solution"):
+        moves = reading.table("solution")
+        known = {s: moves[s.name] for s in reading.symbols("q") if s.name in moves}
+        return {**known, **{velocity(x): f.diff(reading.time) for x, f in known.items()}}
     for key, old, new in (("map", ("Q", "P"), ("new_q", "new_p")), ("inverse_map", ("q", "p"), ("q", "p"))):
-        if reading.has("K") and reading.has(key):
+        if (reading.has("K") or reading.has("F")) and reading.has(key):
             images = reading.lists(key, dict(zip(old, new, strict=True)))
             names = [*reading.symbols(new[0]), *reading.symbols(new[1])]
             return dict(zip(names, (*images[0], *images[1]), strict=True))

@@ -14,7 +14,7 @@ from canon.expression.symbols.symbol import Momentum
 from canon.frozen_mapping import FrozenMapping
 from canon.mechanics.algebra.linear import is_regular
 from canon.mechanics.algebra.substitution import substitute
-from canon.proof.domain.verdict import Status, Undecided, Verdict
+from canon.proof.domain.verdict import Status, Undecided, Verdict, all_hold
 from canon.proof.kinks import off_kinks, vanishes_off_kinks
 from canon.proof.vanish import equal, vanishes
 
@@ -215,11 +215,16 @@ class Determines:
 
 @dataclass(frozen=True)
 class Chain:
-    """Two sides of a chain ``a = b = c`` in an answer are the same; ``said`` is told where they are not."""
+    """Two sides of a chain ``a = b = c`` in an answer are the same; ``said`` is told where they are not.
+
+    Sides that are the same only by the equations of motion, or on the constraints, are answers each by itself:
+    ``otherwise`` yields what the left one comes down to as the answer.
+    """
 
     part: Part
     domain: Domain
     said: str
+    otherwise: Callable[[], Iterator[Question]] = field(default=lambda: iter(()), compare=False)
 
 
 Question: TypeAlias = Chain | Same | SameEquations | Regular | Stated | Differ | Tells | Determines | Verdict
@@ -280,9 +285,14 @@ def decide(question: Question, deadline: Deadline) -> Verdict:
             return fails(COMPLETE, why) if found else Verdict(Status.HOLDS, COMPLETE, "structure")
         case Same():
             return _all_vanish(question, deadline)
-        case Chain(part, domain, said):
+        case Chain(part, domain, said, otherwise):
             verdict = _all_vanish(Same((part,), domain), deadline)
-            return replace(verdict, feedback=said) if verdict.fails else verdict
+            if not verdict.fails:
+                return verdict
+            other = [decide(each, deadline) for each in otherwise() if not isinstance(each, Determines)]
+            if other and all(each.holds for each in other):
+                return all_hold(other, part.name)
+            return replace(verdict, feedback=said)
         case SameEquations(claimed, right, unknowns, domain, before=before):
             return same_equations(claimed, right, unknowns, domain, deadline, before)
         case Regular(matrix, name, domain, singular_is):

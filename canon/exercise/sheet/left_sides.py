@@ -27,6 +27,7 @@ __all__ = [
     "components_asked",
     "is_asked",
     "is_definition",
+    "is_of_another",
     "label_of",
 ]
 
@@ -62,11 +63,12 @@ _DEFINITIONS: Mapping[str, str] = {
     "H": r"[TK]\+[VU]|[VU]\+[TK]|(?:[Σ∑]|sum)?_?i?\(?[^=]*\)?-L|T_2-T_0\+V",
     "K": r"H\+(?:∂F|dF|∂S|F)[_1-4]*(?:/∂t|/dt|_t)?(?:\([^=]*\))?|H'",
     "R": r"L-[^=]*|[^=]*-L",
-    "claim": r"d/dt\(?∂L/∂[^=]*-\(?∂L/∂[^=]*|\(?d/dt\)?\(?∂L/∂[^=+-]*|∂L/∂[^=]*|Q_?[A-Za-z0-9]*",
+    "claim": r"d/dt\(?∂L/∂[^=+-]*-\(?∂L/∂[^=+-]*|\(?d/dt\)?\(?∂L/∂[^=+-]*|∂L/∂[^=+-]*|Q_?[A-Za-z0-9]*",
     "energy_rate": r"d\(?[TKE]\+[VU]\)?/dt|-2F|-2\*F",
     "S": r"[^=]*[Σ∑][^=]*",
+    "I": r"[TK]\+[VU]|[VU]\+[TK]",
 }
-_OF_ANY = r"[-−+]?∂[HLFKSRVUW][_0-9]{0,3}/∂[^=∂]{1,20}|\{[^={}]{1,20},H\}"
+_OF_ANY = r"[-−+]?∂[HLFKSRVUW][_0-9]{0,3}/∂[^-−+=∂*/(){}\[\]]{1,20}|\{[^={}]{1,20},H\}"
 """Derivatives of functions that are not given, and the bracket with H."""
 
 
@@ -257,7 +259,19 @@ def is_definition(said: str, key: str, scope: Scope) -> bool:
     """
     said = said.replace("−", "-")
     names = re.findall(r"[A-Z]", said)
-    if any(scope.declares(name) for name in names[:9]):
+    if not names or any(scope.declares(name) for name in names[:9]):
         return False
-    pattern = _DEFINITIONS.get(key, "")
-    return bool(names and re.fullmatch(f"{pattern}|{_OF_ANY}" if pattern else _OF_ANY, said))
+    if re.fullmatch(_OF_ANY, said):
+        return not any(name in scope.functions for name in names)
+    return re.fullmatch(_DEFINITIONS.get(key, "(?!)"), said) is not None
+
+
+def is_of_another(said: str) -> bool:
+    """Tell whether a side is a derivative or bracket of some function, which names no answer by itself.
+
+    Examples
+    --------
+    >>> is_of_another("∂F/∂q"), is_of_another("{L,H}"), is_of_another("T-V")
+    (True, True, False)
+    """
+    return re.fullmatch(_OF_ANY, said.replace("−", "-")) is not None

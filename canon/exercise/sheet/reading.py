@@ -39,6 +39,8 @@ if TYPE_CHECKING:
 
     from sympy.logic.boolalg import Boolean
 
+    from canon.exercise.sheet.typed_answers import Link
+
 __all__ = ["NAME_KEYS", "InvalidClaim", "Reading"]
 
 _MAKERS: Mapping[str, Callable[..., Symbol]] = FrozenMapping(
@@ -91,7 +93,7 @@ class Reading:
     """
 
     claim: Claim
-    links: tuple[tuple[str, str], ...] = ()
+    links: tuple[Link, ...] = ()
     passed: tuple[str, ...] = ()
     units: Mapping[str, str] = field(default_factory=lambda: FrozenMapping({}))
     names: Mapping[str, Symbol] = field(default_factory=lambda: FrozenMapping({}))

@@ -7,10 +7,11 @@ is told, and what contradicts the question makes the claim invalid.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from canon.exercise.sheet import field_texts
 from canon.exercise.sheet.equation_numbers import without_numbers
@@ -22,6 +23,7 @@ from canon.exercise.sheet.left_sides import (
     components_asked,
     is_asked,
     is_definition,
+    is_of_another,
     label_of,
 )
 from canon.exercise.sheet.matrix_products import components_of_products, equations_of_products
@@ -39,12 +41,20 @@ if TYPE_CHECKING:
 
     _Fault = Callable[[str, LanguageError], Exception]
 
-__all__ = ["TypedAnswers", "typed_answers"]
+__all__ = ["Link", "TypedAnswers", "typed_answers"]
 
 _EQUATIONS = ("claim", "constraints", "restrict", "equations", "implicit", "leaves", "integrals", "boundary")
 _UNTOUCHED = ("domain", "class")
 _EXPANSIONS = {"small", "degree"}
 """Keys of kinds whose answers are right to an order."""
+
+
+class Link(NamedTuple):
+    """An equation that stands between two sides of a chain at a place of the claim, and its left side."""
+
+    place: str
+    text: str
+    left: str
 
 
 @dataclass
@@ -56,7 +66,7 @@ class TypedAnswers:
     keys
         Every text one expression or one equation.
     links
-        Pairs of a place in the claim and an equation that stands there between two sides of a chain.
+        Equations between the sides of chains.
     passed
         Sentences for the warnings.
     units
@@ -64,7 +74,7 @@ class TypedAnswers:
     """
 
     keys: dict[str, Any] = field(default_factory=dict[str, Any])
-    links: list[tuple[str, str]] = field(default_factory=list[tuple[str, str]])
+    links: list[Link] = field(default_factory=list[Link])
     passed: list[str] = field(default_factory=list[str])
     units: dict[str, str] = field(default_factory=dict[str, str])
 
@@ -193,6 +203,9 @@ class _Plain:
         sides = [first, *(side for side in others if not self.is_constant(place, side))]
         if len(sides) == 1:
             return first.text if others else text
+        self.refuse_lagrangian(place, text, sides[0])
+        if not self.is_asked(sides[0], asked) and self.is_asked(sides[-1], asked):
+            sides = [sides[-1], *sides[:-1]]  # p²/2m = H
         if self.is_asked(sides[0], asked):
             if place == "H" and sides[0].said.startswith("E"):
                 self.found.passed.append("E in H is read as H, which is asked for")
@@ -208,12 +221,15 @@ class _Plain:
             if self.is_asked(side, asked):
                 continue
             if self.is_origin(place, side, asked.shown) or self.given(place).put_in(side.text) is not None:
-                self.found.links += [(place, made) for made in self.origin(place, side, sides[-1])]
+                made = self.origin(place, side, sides[-1])
+                self.found.links += [Link(place, each, each.partition(" = ")[0]) for each in made]
             else:
                 self.read(place, text, side, asked)
                 readable.append(side)
         readable.append(sides[-1])
-        self.found.links += [(place, field_texts.equation_between(a, b)) for a, b in pairwise(readable)]
+        self.found.links += [
+            Link(place, field_texts.equation_between(a, b), a.text) for a, b in pairwise(readable)
+        ]
         return sides[-1].text
 
     def is_origin(self, place: str, side: Side, asked: str) -> bool:
@@ -252,9 +268,17 @@ class _Plain:
     def refuse_other_names(self, place: str, text: str, side: Side, asked: Quantity) -> None:
         """Refuse a left side that is the name of something else."""
         label = label_of(side.said)
+        given = self.given(place)
+        if place.startswith("values.") and asked.shown in re.findall(r"[^\W\d_]+(?:_\w+)?", side.said):
+            raise self.contradiction(place, text, side, asked)
+        if is_of_another(side.said) and self.is_origin(place, side, asked.shown):
+            if given.worked_out(side.said) is None:
+                raise self.contradiction(place, text, side, asked)
+            return
         if label is None or place in ("lhs", "rhs"):
             return
-        if self.given(place).put_in(side.text) is None and (label.name or asked.bracket):
+        worked_out = asked.shown == "I" and given.put_in(side.text) is not None
+        if not worked_out and (label.name or asked.bracket):
             raise self.contradiction(place, text, side, asked)
 
     def contradiction(self, place: str, text: str, side: Side, asked: Quantity) -> Exception:
@@ -272,6 +296,12 @@ class _Plain:
             given = self.scope.declares(label.name) or isinstance(self.of.keys.get(label.name), str)
             asked = asked if given else Quantity("I", ((label.name, 0),))
         return is_asked(label, asked, self.scope)
+
+    def refuse_lagrangian(self, place: str, text: str, side: Side) -> None:
+        """Refuse ``L = …`` as a constant of the motion where L is the Lagrangian of the claim."""
+        if place == "I" and side.said == "L" and isinstance(self.of.keys.get("L"), str):
+            reason = "is L the Lagrangian here, or a name of the constant?"
+            raise self.told(place, text, side, reason, "write L_z = …, or only what stands on the right")
 
     def is_constant(self, place: str, side: Side) -> bool:
         """Tell whether a side only says that the others are constant."""
@@ -377,16 +407,30 @@ class _Plain:
         if len(rest) == len(sides):
             links = [field_texts.equation_between(a, b) for a, b in pairwise(sides)]
             return links or [sides[0].text]
-        whole = len(rest) == 1 and "-" in sides[0].said and rest[0].said.strip("$0. ")
-        if len(rest) < 2 and not whole:
-            raise self.told(place, text, sides[0], _no_equation(rest), "write out what it is for this one")
+        made = self.worked_out(place, sides, rest)
+        said = [side for side in rest if side.said.strip("$0. ")]
+        if len(rest) == 1 and said and sides[0] not in rest and "-" in sides[0].said:
+            return made or [
+                said[0].text
+            ]  # d/dt(∂L/∂q̇) − ∂L/∂q is what stands there, and zero; or it equals the forces
+        equations = [*made, *(field_texts.equation_between(a, b) for a, b in pairwise(rest))]
+        if not said or not equations:
+            unknown = next((side for side in sides if self.is_unknown(place, side)), None)
+            reason, remedy = _no_equation(said, unknown)
+            raise self.told(place, text, unknown or sides[0], reason, remedy)
+        return equations
+
+    def worked_out(self, place: str, sides: Sequence[Side], rest: Sequence[Side]) -> list[str]:
+        """Return the equations of origins with the side beside them that is read."""
         made: list[str] = []
         for side, beside in zip(sides, (*sides[1:], sides[-2]), strict=True):
-            if side not in rest:
+            if rest and side not in rest:
                 made += self.origin(place, side, beside if beside in rest else rest[0])
-        if whole:  # d/dt(∂L/∂q̇) − ∂L/∂q is what stands there, and zero; or it equals the forces
-            return made or [rest[0].text]
-        return [*made, *(field_texts.equation_between(a, b) for a, b in pairwise(rest))]
+        return made
+
+    def is_unknown(self, place: str, side: Side) -> bool:
+        """Tell whether a side is made of functions that nobody gave."""
+        return self.is_origin(place, side, "claim") and self.given(place).worked_out(side.said) is None
 
     def statements(self, place: str, text: str) -> tuple[Statement, ...]:
         """Return the statements of a text."""
@@ -400,8 +444,14 @@ class _Plain:
         return self.fault(place, LanguageError(text, side.column, reason, remedy))
 
 
-def _no_equation(beside: Sequence[Side]) -> str:
-    """Return what is wrong with ``d/dt(∂L/∂θ̇) = ∂L/∂θ``, or with ``∂L/∂x = -k x``, as an equation of motion."""
-    if any(side.said.strip("$0. ") for side in beside):
-        return "this says what a part of Lagrange's equation is, and is no equation of motion"
-    return "this is Lagrange's equation itself, true of every system"
+def _no_equation(beside: Sequence[Side], unknown: Side | None) -> tuple[str, str]:
+    """Return what is wrong with ``d/dt(∂L/∂θ̇) = ∂L/∂θ`` or ``∂L/∂x = -k x`` as an equation of motion, and a remedy."""
+    if not beside:
+        return "this is Lagrange's equation itself, true of every system", "write out what it is for this one"
+    if unknown is not None:
+        shown = unknown.text.strip().strip("$").strip()[:40]
+        return f"what {shown} is made of is not given here", "write it out"
+    return (
+        "this says what a part of Lagrange's equation is, and is no equation of motion",
+        "write out what it is for this one",
+    )

@@ -7,16 +7,18 @@ comma between figures, ``0,588``, and ``±`` between decimals, which may be an u
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from canon.exercise.sheet.field_texts import entries_of
-from canon.exercise.sheet.left_sides import label_of
-from canon.exercise.sheet.quantities.measures import unit_behind
+from canon.exercise.sheet.left_sides import Label, label_of
+from canon.exercise.sheet.quantities.calculations import calculated
+from canon.exercise.sheet.quantities.measures import measure_of, unit_behind
 from canon.expression.parse import parse_expression, statements_of
 from canon.expression.text.declared_names import key_of
 from canon.expression.text.markup import unmarked
 from canon.expression.text.tokens import LanguageError
+from canon.expression.text.units import units
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -31,7 +33,7 @@ __all__ = ["Value", "both_signs", "signed_tables", "typed_values", "values_under
 MOST_VALUES = 100
 """Most values in one field."""
 _OR = re.compile(
-    r"\\(?:text|textrm|mbox|mathrm)\s*\{[\s~]*(?:or|and)[\s~]*\}|\\(?:lor|vee)(?![A-Za-z])|\bor\b|∨"
+    r"\\(?:text|textrm|mbox|mathrm)\s*\{[\s~]*(?:or|and)[\s~]*\}|\\(?:lor|vee)(?![A-Za-z])|\bor\b|∨|(?<=\s)\|\|(?=\s)"
 )
 _NEARLY = re.compile(r"\\(?:approx|simeq|in)(?![A-Za-z])|[≈≃≅≐∈]|~=|(?<!\\)(?<=\s)~(?=\s*[-0-9.])|^\s*~")
 _TEN = re.compile(r"(?<=[0-9])\s?([xX])\s?(?=10(?:\^|\*\*|[⁻⁺⁰¹²³⁴-⁹]))")
@@ -39,6 +41,8 @@ _DOTS = re.compile(r"(?<=[0-9])(?:\.\.\.+|…|\\(?:dots|ldots|cdots)(?![A-Za-z])
 _COMMA = re.compile(r"(?<![0-9A-Za-z_.,])[0-9]+,[0-9]+(?![0-9,])")
 _SIGNS = re.compile(r"\\pm(?![A-Za-z])|\\mp(?![A-Za-z])|±|∓|\+/[-−]")
 _ABOUT = re.compile(r"\b(?:about|approximately|approx\.?|roughly|ca\.|circa)(?=\s*[-0-9.])")
+_ARC = re.compile(r"(?i)arc|(?<![a-z])a(?:cos|sin|tan)|(?:cos|sin|tan)(?:⁻¹|\^\{?\(?-1)")
+"""Inverse functions, whose values are angles."""
 _UNCERTAIN = re.compile(r"[0-9]*\.[0-9]+\s*(?:±|\\pm|\+/-)\s*[0-9]*\.[0-9]+|[0-9]\.[0-9]+\([0-9]+\)")
 
 
@@ -126,8 +130,10 @@ def typed_values(text: str, scope: Scope, *, measured: bool, name: str = "") -> 
         for side in sides:
             if side is sides[-1] or _is_value(side, scope, measured=measured):
                 values += _of_side(side, scope, measured=measured)
-            elif (label := label_of(side.said)) is not None:
-                _refuse_another(text, side, label.name, name)
+            elif (label := _label(side)) is not None:
+                _refuse_another(text, side, label, name)
+            elif side is sides[0] or _holds(side, name or _name_of(sides[0])):
+                _refuse_formula(text, side, name)
             else:
                 passed.append(side.text.strip().lstrip("$"))
         if len(values) > MOST_VALUES:
@@ -163,10 +169,18 @@ def values_under(
             raise fault(f"{key}[{i}]", error) from None
         told += [f"{side} in {key} is passed over: it holds names that are not declared" for side in passed]
         if measured and answer:
+            found = [_of_angle(one, str(keys["unit"])) for one in found]
             bare = (one.text.strip(" $") for one in found if not one.unit)
             told += [f"{text} is read in {keys['unit']}, the unit that is asked for" for text in bare]
         values += found
     return values, told
+
+
+def _of_angle(value: Value, asked: str) -> Value:
+    """Return an arc cosine without a unit in radians, where an angle is asked for."""
+    measure = measure_of(asked)
+    angle = measure is not None and measure.counted_in == "angles" and not any(measure.powers)
+    return replace(value, unit="rad") if angle and not value.unit and _ARC.search(value.text) else value
 
 
 def signed_tables(place: str, table: Mapping[str, Any], fault: _Fault) -> list[Mapping[str, Any]]:
@@ -194,8 +208,37 @@ def _plain_signs(text: str, scope: Scope) -> str:
     return text
 
 
-def _refuse_another(text: str, side: Side, said: str, name: str) -> None:
-    """Refuse the name of another quantity than the one that is asked for; figures count its values."""
+def _label(side: Side) -> Label | None:
+    """Return the one name that a side is; ``sin x`` is none."""
+    label = label_of(side.said)
+    words = re.search(r"[^\W\d_]\s+[^\W\d_]", side.text.strip())
+    return None if label is None or words else label
+
+
+def _name_of(side: Side) -> str:
+    """Return the name that a side is, empty where it is none."""
+    label = _label(side)
+    return label.name if label else ""
+
+
+def _holds(side: Side, name: str) -> bool:
+    """Tell whether a formula holds a name."""
+    words = re.findall(r"[^\W\d_]+(?:_\w+)?", side.said)
+    return bool(name) and any(key_of(word) == key_of(name) for word in words)
+
+
+def _refuse_formula(text: str, side: Side, name: str) -> None:
+    """Refuse an equation for a value, ``v^2 = 10``, which is not the value."""
+    shown, asked = side.text.strip().lstrip("$")[:40], name or "a value"
+    remedy = f"write {name or 'x'} = … with the value, or only the value"
+    raise LanguageError(text, side.column, f"{asked} is asked for here, and this says {shown} = …", remedy)
+
+
+def _refuse_another(text: str, side: Side, label: Label, name: str) -> None:
+    """Refuse the name of another quantity than the one that is asked for, or its rate; figures count its values."""
+    said = label.name
+    if label.rates:
+        _refuse_formula(text, side, name)
     if name and key_of(said.rstrip("0123456789_")) != key_of(name.rstrip("0123456789_")):
         reason = f"{name} is asked for here, and this says {said} = …"
         raise LanguageError(
@@ -207,7 +250,11 @@ def _of_side(side: Side, scope: Scope, *, measured: bool) -> Iterator[Value]:
     """Yield the values of one side: the entries of a set, both signs, each without its unit."""
     for entry in entries_of(side.text):
         for one in both_signs(entry):
-            yield Value(*unit_behind(one, scope)) if measured else Value(one)
+            value = Value(*(calculated(one, scope) or unit_behind(one, scope))) if measured else Value(one)
+            if measured and (inside := units(value.text, scope)):
+                reason = f"the unit {inside[0].text} stands inside a calculation"
+                raise LanguageError(one, inside[0].start + 1, reason, "write it once, behind the value")
+            yield value
 
 
 def _is_value(side: Side, scope: Scope, *, measured: bool) -> bool:

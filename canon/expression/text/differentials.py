@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from canon.expression.symbols.symbol import Coordinate
 from canon.expression.text.syntax import Call, Name, Node, Number, children
 
 if TYPE_CHECKING:
@@ -124,9 +125,20 @@ def _made(
         for _ in range(order):
             node = Call(TOTAL, (node,), token.column)
         return node
+    if sign == "∂" and _is_rate(reader, operand, variables) and isinstance(operand, Name):
+        return Name(operand.text, operand.primes + order, operand.column)
     orders = [Number(n, 1, token.column) for _, n in variables]
     name = PARTIAL if sign == "∂" else "d/dx"
     return Call(name, (operand, *(v for v, _ in variables), *orders), token.column)
+
+
+def _is_rate(reader: FactorParser, operand: Node, variables: list[tuple[Node, int]]) -> bool:
+    """Tell whether ``∂²θ/∂t²`` is meant for the acceleration: what moves depends on the time alone."""
+    ((variable, order), *others) = variables
+    clock = isinstance(variable, Name) and variable.text == reader.scope.time.name and not variable.primes
+    if others or not clock or not isinstance(operand, Name) or operand.primes + order > 2:
+        return False
+    return isinstance(reader.scope.symbol(operand.text), Coordinate)
 
 
 def of_operator(reader: FactorParser) -> Token | None:

@@ -15,7 +15,7 @@ from sympy.core.function import AppliedUndef, Derivative, Subs
 
 from canon.exercise.diagnose.repairs.unbuilt import Joined, Values, Within
 from canon.mechanics.algebra.substitution import exchanged
-from canon.proof.domain.balls import value
+from canon.proof.domain.balls import Unmodelled, value
 from canon.proof.trees.sympy_types import arguments
 
 if TYPE_CHECKING:
@@ -152,7 +152,10 @@ class Neighbourhood:
             return found
         for unknown in self.examples.unknowns(f):
             if unknown not in memo:
-                memo[unknown] = self._value(self.examples[unknown], along)
+                example = self.examples[unknown]
+                if example.has(unknown):  # a derivative that SymPy leaves as it stands, as that of a jump
+                    raise Unmodelled(f"{unknown} has no value")
+                memo[unknown] = self._value(example, along)
         return value(f, {}, memo)
 
     def slope(self, f: Form, by: Symbol) -> acb:

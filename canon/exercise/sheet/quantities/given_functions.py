@@ -35,6 +35,8 @@ _TERM = re.compile(
     r"|\{(?P<first>[^{},=]{1,20}),(?P<second>[A-Z])\})"
 )
 
+_SLOPE = re.compile(r"∂\s?(?P<of>[A-Z][12]?)\s?/\s?∂(?P<by>[^-−+=∂*/(){}\[\]\s]{1,20})")
+
 
 def key_at(place: str) -> str:
     """Return the key of a place in a claim.
@@ -119,20 +121,32 @@ class GivenFunctions:
         >>> GivenFunctions({"L": "v**2/2"}, "R", Scope({"v": sp.Symbol("v")})).put_in("-L")
         -v**2/2
         """
-        names = {name: sp.Dummy(name, real=True) for name in _BY_LETTER if self._gives(name)}
-        if not names or len(text.strip()) > _LONGEST:
+        given = [name for name in _BY_LETTER if self._gives(name)]
+        if not given or len(text.strip()) > _LONGEST:
             return None
         try:
-            said = parse_expression(text, replace(self.scope, names={**self.scope.names, **names}))
-            put = {
-                symbol: parse_expression(self.keys[name], self.scope)
-                for name, symbol in names.items()
-                if said.has(symbol)
-            }
+            letters = {name: parse_expression(self.keys[name], self.scope) for name in given}
+            plain, slopes = self._without_slopes(text, letters)
+            put = {name: (sp.Dummy(name, real=True), f) for name, f in {**letters, **slopes}.items()}
+            names = {**self.scope.names, **{name: symbol for name, (symbol, _) in put.items()}}
+            said = parse_expression(plain, replace(self.scope, names=names))
         except LanguageError:
             return None
-        found = said.xreplace(put) if put else None
-        return found if isinstance(found, sp.Expr) else None
+        found = said.xreplace(dict(put.values()))
+        return found if found != said and isinstance(found, sp.Expr) else None
+
+    def _without_slopes(self, text: str, letters: Mapping[str, Expr]) -> tuple[str, dict[str, Expr]]:
+        """Return a text with names in place of derivatives ``∂L/∂x'`` of the given functions, and what these are."""
+        slopes: dict[str, Expr] = {}
+
+        def named(found: re.Match[str]) -> str:
+            by = parse_expression(found["by"], self.scope)
+            if found["of"] not in letters or not isinstance(by, sp.Symbol):
+                return found.group()
+            slopes[f"Slope_{len(slopes)}"] = letters[found["of"]].diff(by)
+            return f" Slope_{len(slopes) - 1} "
+
+        return _SLOPE.sub(named, text), slopes
 
     def _gives(self, letter: str) -> bool:
         """Whether a letter stands for a function that the claim gives."""
