@@ -92,7 +92,7 @@ def test_an_interruption_between_slices_keeps_what_lies_before(monkeypatch):
 
     def interrupted(fraction):
         calls.append(fraction)
-        if len(calls) == 2:
+        if len(calls) == 4:
             raise KeyboardInterrupt
 
     whole = propagate(

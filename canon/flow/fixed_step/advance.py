@@ -21,9 +21,6 @@ __all__ = ["AdvancedStates", "Interruption", "advance_orbits"]
 _SLICE_SECONDS = 0.1
 """Between calls of compiled code Python can handle an interruption and report progress."""
 
-_MUCH_LONGER = 4
-"""A slice is followed by one so many times as long where that ends in time, too."""
-
 _MANY = 2048
 """From so many samples on, a run is worth the 10 ms for which the loop that takes them in one call is compiled."""
 
@@ -205,7 +202,7 @@ class _Slices:
         self.check_finite()
         spent = time.perf_counter() - self.clock
         if self.done - self.begun == self.steps and spent < _SLICE_SECONDS / 2:
-            self.steps *= _MUCH_LONGER if spent < _SLICE_SECONDS / (2 * _MUCH_LONGER) else 2
+            self.steps *= 2
         elif spent > _SLICE_SECONDS and self.steps > 1:
             self.steps //= 2
         self.progress(self.done / self.last)
