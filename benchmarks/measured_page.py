@@ -319,7 +319,7 @@ SECTIONS = {
     ),
     "peers": Section(
         "Where a ratio is below 1, canon's cheapest method takes less time than that of any other library that "
-        "reaches the accuracy: by its loop, and by the whole of a further call of propagate over a thousand periods.",
+        "reaches the accuracy: by its loop, and by the whole of a further call over a thousand periods.",
         (
             Table(
                 ("problem", "max |ΔE/E|", "canon / the cheapest other", "with canon's whole call"),

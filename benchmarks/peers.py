@@ -3,9 +3,9 @@
 For each problem, contender and accuracy: the cheapest setting tried (steps a period, or tolerance) that keeps
 max |ΔE/E| at 3137 instants below it, and the processor time a period of a run that keeps the last state only: the
 median of runs that take turns. Of others it is the time of the call that integrates, on a problem that is set up and
-compiled. Of canon both are told: the loop alone, and the whole of a further ``propagate``, which checks what it is
-given and measures the energy of what comes out. Others are installed into an environment of their own; canon needs
-none of them::
+compiled. Of canon both are told: the loop alone, and the whole of a call on a motion that is prepared likewise
+(``canon.prepare``), which checks the start and measures the energy of what comes out. Others are installed into an
+environment of their own; canon needs none of them::
 
     pip install rebound galpy pyhamsys diffrax numbalsoda    # the last needs a Fortran compiler
     python benchmarks/peers.py --store
@@ -30,11 +30,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import sympy as sp
 
-from canon import SABA, Gauss, Splitting, Taylor, WisdomHolman, propagate
+from canon import SABA, Gauss, Splitting, Taylor, WisdomHolman, prepare
 from canon.scene import find
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
+
+    from canon.flow import PreparedMotion, Trajectory
 
 STORED = Path(__file__).parent / "results" / "peers.txt"
 ACCURACIES = (1e-4, 1e-8, 1e-12)
@@ -140,14 +142,23 @@ def canon_methods(problem: Problem) -> Iterator[Contender]:
         methods += [SABA("8-6-4"), SABA("10-6-4")]
     if problem.scene == "double-pendulum":
         methods = [Gauss(s) for s in (2, 3, 4, 5, 6, 8)]
+    made: dict[Any, PreparedMotion] = {}
+
+    def motion_of(method: Any, instants: int, **settings: Any) -> Trajectory:
+        """Return a motion; what is not the start's is worked out once, as other libraries' problems are."""
+        key = str(method), instants, *settings.values()
+        if key not in made:
+            made[key] = prepare(
+                problem.hamiltonian, (0.0, problem.span), method=method, parameters=problem.values,
+                samples=instants, **settings,
+            )  # fmt: skip
+        return made[key].propagate(problem.y0)
+
     for method in methods:
 
         def run(setting: int, instants: int, method: Any = method) -> Run:
-            step = problem.span / problem.periods / setting
-            motion = propagate(
-                problem.hamiltonian, (0.0, problem.span), problem.y0, method=method, step=step * (1 + 1e-10),
-                precision="double", parameters=problem.values, samples=instants,
-            )  # fmt: skip
+            step = problem.span / problem.periods / setting * (1 + 1e-10)
+            motion = motion_of(method, instants, step=step, precision="double")
             # A run of fewer steps than instants shows every step.
             return motion.cpu_seconds, np.pad(motion.energy, (0, instants + 1 - len(motion.energy)), "edge")
 
@@ -157,10 +168,7 @@ def canon_methods(problem: Problem) -> Iterator[Contender]:
         yield Contender(f"canon {method}", [*fewest, *steps(problem)], run)
 
     def taylor(setting: float, instants: int) -> Run:
-        motion = propagate(
-            problem.hamiltonian, (0.0, problem.span), problem.y0, method=Taylor(setting),
-            parameters=problem.values, samples=instants,
-        )  # fmt: skip
+        motion = motion_of(Taylor(setting), instants)
         return motion.cpu_seconds, motion.energy
 
     yield Contender("canon Taylor", TOLERANCES, taylor)

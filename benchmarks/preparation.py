@@ -12,7 +12,7 @@ import time
 from typing import TYPE_CHECKING, Any
 from unittest import mock
 
-from canon import Splitting, Taylor, WisdomHolman, propagate
+from canon import Splitting, Taylor, WisdomHolman, prepare, propagate
 from canon.flow.fixed_step import compiled_loop
 from canon.flow.run import observables_along
 from canon.kernel.llvm import kept_code, machine_code
@@ -34,16 +34,26 @@ CALLS = (
 
 
 def run_of(
-    scene: str, method: Any, steps: int, periods: int, precision: str = "double", samples: int = 1
+    scene: str,
+    method: Any,
+    steps: int,
+    periods: int,
+    precision: str = "double",
+    samples: int = 1,
+    *,
+    prepared: bool = False,
 ) -> Callable[[], Any]:
-    """Return what integrates a scene from its first start."""
+    """Return what integrates a scene from its first start, prepared or not."""
     known = find(scene)
     period, start = known.time_scale(known.values), known.state(known.starts[0])
-    fixed: dict[str, Any] = {"step": period / steps * (1 + 1e-10), "precision": precision} if steps else {}
-    return lambda: propagate(
-        known.hamiltonian, (0.0, periods * period), start, method=method, parameters=known.values,
-        samples=samples, **fixed,
-    )  # fmt: skip
+    given: dict[str, Any] = {"method": method, "parameters": known.values, "samples": samples}
+    if steps:
+        given |= {"step": period / steps * (1 + 1e-10), "precision": precision}
+    span = (0.0, periods * period)
+    if prepared:
+        made = prepare(known.hamiltonian, span, **given)
+        return lambda: made.propagate(start)
+    return lambda: propagate(known.hamiltonian, span, start, **given)
 
 
 def milliseconds(call: Callable[[], Any]) -> tuple[float, Any]:
@@ -55,10 +65,17 @@ def milliseconds(call: Callable[[], Any]) -> tuple[float, Any]:
 
 def further_calls() -> None:
     """Print what a further call takes beside its loop."""
-    print("a further call of propagate, ms: the whole, its steps, what is beside them")
-    runs = [(name, method, run_of(scene, method, steps, n)) for name, scene, method, steps, n in CALLS]
-    for _, _, run in runs:
-        run()
+    print(
+        "a further call of propagate, then of a prepared motion, ms: the whole, its steps, what is beside them"
+    )
+    runs = [
+        (f"prepared {name}" if prepared else name, method, run_of(scene, method, steps, n, prepared=prepared))
+        for prepared in (False, True)
+        for name, scene, method, steps, n in CALLS
+    ]
+    for _ in range(TURNS):
+        for _, _, run in runs:
+            run()
     taken: list[list[tuple[float, float]]] = [[] for _ in runs]
     for _ in range(TURNS):
         for (_, _, run), times in zip(runs, taken, strict=True):
@@ -66,7 +83,7 @@ def further_calls() -> None:
             times.append((whole, 1e3 * motion.cpu_seconds))
     for (name, method, _), times in zip(runs, taken, strict=True):
         whole, steps = (statistics.median(part) for part in zip(*times, strict=True))
-        print(f"{name:24}{method!s:16}{whole:9.3f}{steps:9.3f}{whole - steps:9.3f}")
+        print(f"{name:32}{method!s:16}{whole:9.3f}{steps:9.3f}{whole - steps:9.3f}")
 
 
 def loops() -> None:

@@ -53,7 +53,9 @@ from .method.solvable_splitting import SABA as SABA
 from .method.solvable_splitting import SBAB as SBAB
 from .method.solvable_splitting import SolvableSplitting as SolvableSplitting
 from .method.solvable_splitting import WisdomHolman as WisdomHolman
+from .propagation import PreparedMotion as PreparedMotion
 from .propagation import is_separable as is_separable
+from .propagation import prepare as prepare
 from .propagation import propagate as propagate
 from .run.event import Crossing as Crossing
 from .run.event import Event as Event

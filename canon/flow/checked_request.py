@@ -1,32 +1,28 @@
-"""Checks of the arguments of a run, and the task made of them."""
+"""Checks of the arguments of a run, and the course made of them."""
 
 from __future__ import annotations
 
 import functools
 import math
-import warnings
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from sympy import Symbol
 
-from canon.expression.graph.number_systems import FLOAT64, LONGDOUBLE
+from canon.array import all_finite
 from canon.expression.symbols.user_input import counted, given_expression
+from canon.flow.course import Course
 from canon.flow.fixed_step.fixed_steps import planned
-from canon.flow.kinked.regimes import kinks_of
 from canon.flow.method.engine import FIXED_STEPS
 from canon.flow.method.method import TimeTransformed
 from canon.flow.method.method_text import method_of
-from canon.flow.run.event import prepared_events
-from canon.flow.run.observables_along import AccuracyWarning
-from canon.flow.run.range_check import check_magnitudes, is_narrow
-from canon.flow.run.sampling_plan import adaptive_plan, fictitious_plan, sampling
-from canon.flow.system.hamiltonian_map import DRIFT_AND_KICK, KICK_AND_DRIFT
-from canon.flow.task import Task
+from canon.flow.run.sampling_plan import adaptive_plan, sampling
+from canon.flow.system.start_of_motion import state_in_order
 from canon.flow.transformed.extended_hamiltonian import extended, extended_system
+from canon.frozen_mapping import FrozenMapping
 from canon.kernel.llvm.number_types import double_pair
 from canon.kernel.program.hamilton_equations import HamiltonEquations, equations, exact_number, exact_numbers
 
@@ -40,14 +36,17 @@ if TYPE_CHECKING:
     from canon.flow.method.method import Method
     from canon.flow.request import Request
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
+    from canon.flow.task import Task
     from canon.flow.transformed.extended_hamiltonian import ExtendedSystem
 
 __all__ = [
+    "HamiltonianCourse",
+    "course_of",
+    "course_with",
     "functions_by_name",
     "hamilton_equations_of",
     "parted_by_orbit",
-    "task_of",
-    "task_with",
+    "refuse_swapped",
     "two_ends",
 ]
 
@@ -55,8 +54,40 @@ _KEPT = 64
 """Systems kept for the next call."""
 
 
-def task_of(request: Request) -> Task:
-    """Return the task of a request for the motion of a Hamiltonian.
+@dataclass(frozen=True, eq=False)
+class HamiltonianCourse:
+    """What a run of a Hamiltonian is to do, and how its starts are read.
+
+    Parameters
+    ----------
+    course
+        What it is to do.
+    variables
+        Coordinates and momenta, in order.
+    varying
+        Values of the parameters that differ from orbit to orbit, by name.
+    """
+
+    course: Course
+    variables: tuple[Symbol, ...]
+    varying: Mapping[str, npt.NDArray[Any]]
+
+    def task(self, y0: Any) -> Task:
+        """Return the task of a start: numbers in order, one or many, or by name.
+
+        Raises
+        ------
+        KeyError, ValueError
+            As :func:`canon.flow.propagation.propagate` documents them.
+        """
+        if isinstance(y0, Mapping):
+            y0 = state_in_order(y0, self.variables)
+        states, single = _with_parameters(y0, len(self.variables) // 2, self.varying)
+        return self.course.task(states, single=single)
+
+
+def course_of(request: Request) -> HamiltonianCourse:
+    """Return the course of a request for the motion of a Hamiltonian; nothing of its start is looked at.
 
     Raises
     ------
@@ -66,81 +97,65 @@ def task_of(request: Request) -> Task:
     hamiltonian: HamiltonianSystem = request.system
     fixed, varying = parted_by_orbit(request.parameters or {})
     system = hamilton_equations_of(hamiltonian, fixed, tuple(varying))
-    ends = two_ends(request.t_span, request.y0)
-    given, single = _with_parameters(request.y0, len(hamiltonian.q), varying)
 
     def in_fictitious_time(method: TimeTransformed) -> ExtendedSystem:
         larger = extended(hamiltonian, method)
         equations = hamilton_equations_of(larger, fixed, tuple(varying))
         return extended_system(larger, equations, hamiltonian, Fraction(request.step or 0))
 
-    return task_with(request, system, given, ends, single=single, in_fictitious_time=in_fictitious_time)
+    made = course_with(request, system, two_ends(request.t_span), in_fictitious_time)
+    return HamiltonianCourse(made, (*hamiltonian.q, *hamiltonian.p), FrozenMapping(varying))
 
 
-def task_with(
+def course_with(
     request: Request,
     system: HamiltonEquations,
-    given: tuple[Array, Array],
     ends: tuple[Fraction, Fraction],
-    *,
-    single: bool,
     in_fictitious_time: Callable[[TimeTransformed], ExtendedSystem] | None = None,
-) -> Task:
-    """Return the task of equations with starting states, each of shape (2n, orbits), and the rest of a request.
+) -> Course:
+    """Return the course of equations, with the rest of a request.
 
     Parameters
     ----------
     request
-        Method, precision and what to keep; its system, span, start and parameters have been looked at already.
-    system, given, ends
-        The equations, the starting states as sums of two doubles, the first and the last time.
-    single
-        Whether one state was given rather than several.
+        Method, precision and what to keep; its system, span and parameters have been looked at already.
+    system, ends
+        The equations, the first and the last time.
     in_fictitious_time
         What makes the system that a time-transformed method integrates.
     """
     method = _with_tolerance(method_of(request.method), request.tolerance)
-    step, precision, times, cadence = request.step, request.precision, request.times, request.cadence
     extra = functions_by_name(request.observables)
     if "energy" in extra:
         raise ValueError(
             "observables: 'energy' is the Hamiltonian, which is always observed; take another name"
         )
     nodes = [system.hamiltonian, *(system.node(f, f"the observable {name!r}") for name, f in extra.items())]
-    wanted = sampling(ends, request.samples, times)
-    rates = _rates_at_start(system, given, ends[0], precision)
-    if is_narrow(precision):
-        check_magnitudes(system, given[0][:, 0], rates, ends, method, precision)
-    frame = None
+    wanted, plan, frame = sampling(ends, request.samples, request.times), None, None
     if method.engine is FIXED_STEPS:
-        plan = planned(wanted, step, method)
+        plan = planned(wanted, request.step, method)
     elif isinstance(method, TimeTransformed):
-        _check_transformed(method, step, cadence)
+        _check_transformed(method, request.step, request.cadence)
         assert in_fictitious_time is not None
         frame = in_fictitious_time(method)
-        plan = fictitious_plan(wanted, named=times is not None or not single)
     else:
-        _check_adaptive(method, step, cadence, precision)
+        _check_adaptive(method, request.step, request.cadence, request.precision)
         plan = adaptive_plan(wanted)
-    task = Task(
+    return Course(
         system=system,
         method=method,
-        precision=precision,
-        states=given,
-        single=single,
+        precision=request.precision,
+        ends=ends,
+        wanted=wanted,
         plan=plan,
         names=tuple(extra),
         nodes=tuple(nodes),
-        cadence=cadence,
+        cadence=request.cadence,
         events=tuple(request.events),
         dense=request.dense,
-        fictitious=frame,
         max_step=_longest(request.max_step, method),
+        fictitious=frame,
     )
-    _check_events(task)
-    if method.engine.takes_step and method not in (KICK_AND_DRIFT, DRIFT_AND_KICK):
-        _warn_of_kinks(system, method)
-    return task
 
 
 def functions_by_name(observables: Any) -> dict[str, Expr]:
@@ -249,19 +264,29 @@ def _with_parameters(
     return (states[0], states[1]), False
 
 
-def two_ends(t_span: Any, y0: Any) -> tuple[Fraction, Fraction]:
-    """Return the first and the last time, exactly; a state in their place is refused where that can be seen."""
+def two_ends(t_span: Any) -> tuple[Fraction, Fraction]:
+    """Return the first and the last time, exactly."""
     if np.shape(t_span) != (2,):
         raise ValueError(
             f"t_span = {t_span}: give the first and the last time, (t0, t1), and after it the state y0"
         )
+    start, end = (exact_number(t, "t_span") for t in t_span)
+    return start, end
+
+
+def refuse_swapped(t_span: Any, y0: Any) -> None:
+    """Refuse a state in the place of the span of time, where that can be seen.
+
+    Raises
+    ------
+    ValueError
+        The span is a list and the state a pair.
+    """
     if isinstance(t_span, list) and isinstance(y0, tuple) and len(y0) == 2:
         raise ValueError(
             f"t_span = {t_span} and y0 = {y0} look like each other's: the span of time comes before the state, "
             f"propagate(system, {y0}, {t_span}). Where {t_span} is the span, write it as a tuple"
         )
-    start, end = (exact_number(t, "t_span") for t in t_span)
-    return start, end
 
 
 def _states(y0: Any, n: int) -> tuple[Array, Array]:
@@ -273,42 +298,13 @@ def _states(y0: Any, n: int) -> tuple[Array, Array]:
             f"{counted(n, 'momentum', 'momenta')} make a state (q, p) of shape ({2 * n},), "
             f"several of them ({2 * n}, orbits)"
         )
-    if given.dtype == np.float64 and not np.isfinite(given).all():
+    if given.dtype == np.float64 and not all_finite(given):
         raise ValueError(f"y0 = {given} is not finite: give a state (q, p) of finite numbers")
     if given.dtype != np.float64:
         pairs = [double_pair(exact_number(x, "a component of y0")) for x in given.ravel().tolist()]
         high, low = (np.array(part).reshape(2 * n, -1) for part in zip(*pairs, strict=True))
         return high, low
     return given.reshape(2 * n, -1), np.zeros((2 * n, given.size // (2 * n)))
-
-
-def _rates_at_start(
-    system: HamiltonEquations, given: tuple[Array, Array], start: Fraction, precision: str | int | None
-) -> Array:
-    """Return the rates of change at the first state, and make sure that those at all states are finite."""
-    states, low = given
-    narrow = is_narrow(precision)
-    whole = states if narrow else states.astype(np.longdouble) + low
-    # Numbers are quicker than arrays of one number.
-    point = whole[:, 0] if whole.shape[1] == 1 else whole
-    values = dict(zip(system.inputs, (*point, point.dtype.type(float(start))), strict=True))
-    nodes = [system.hamiltonian, *system.velocity, *system.force]
-    try:
-        found = system.graph.evaluate(nodes, values, FLOAT64 if narrow else LONGDOUBLE)
-    except OverflowError as large:
-        raise ValueError(
-            "a constant or a parameter of H is beyond 1e308: choose other units; exponents with floats, which SymPy "
-            "takes apart, exp(a + b*t) = exp(a)*exp(b*t), keep together with exact numbers, Rational(1, 1000)"
-        ) from large
-    if not all(bool(np.isfinite(x).all()) for x in found):
-        finite = np.logical_and.reduce([np.isfinite(np.broadcast_to(x, states.shape[1:])) for x in found])
-        wrong = states[system.rows, np.argmin(finite)]
-        raise ValueError(
-            f"H or its derivatives are not finite at y0 = {wrong}: start inside H's domain, in units "
-            "in which no number on the way is beyond 1e±308"
-        )
-    with np.errstate(over="ignore"):  # wider numbers may be beyond doubles, which nobody looks at then
-        return np.array([np.ravel(rate)[0] for rate in found[1:]], dtype=np.float64)
 
 
 def _check_transformed(method: TimeTransformed, step: float | None, cadence: int | None) -> None:
@@ -333,32 +329,3 @@ def _check_adaptive(
         raise ValueError(
             f"precision={precision!r}: {method} runs in {' or '.join(engine.precisions)} precision"
         )
-
-
-def _warn_of_kinks(system: HamiltonEquations, method: Method) -> None:
-    """Warn where steps of one size pass over kinks."""
-    kinks = kinks_of(system)
-    if kinks is not None:
-        where = ", ".join(f"{system.graph.to_sympy(g)} = 0" for g in kinks.functions[:4])
-        warnings.warn(
-            f"{method} steps over the kinks at {where}, where its order is lost; Taylor() and DOP853() stop there and "
-            "go on beyond",
-            AccuracyWarning,
-            stacklevel=5,
-        )
-
-
-def _check_events(task: Task) -> None:
-    if task.dense and not task.method.engine.keeps_polynomials:
-        raise ValueError(f"dense=True: {task.method} has no polynomials to keep; Taylor() has")
-    if not task.events:
-        return
-    stops = [event for event in task.events if event.action == "stop"]
-    if stops and task.states[0].shape[1] > 1:
-        raise ValueError(
-            f"the event {stops[0]} would stop each of many orbits at a time of its own, and their states are kept at "
-            "common times: record it, action='record', or propagate the orbits one by one"
-        )
-    if task.cadence is not None:
-        raise ValueError("events and cadence: statistics inside the loop do not see events; leave one out")
-    prepared_events(task.system, task.events)

@@ -1,7 +1,8 @@
-"""Propagation: from a system and a starting state to a trajectory."""
+"""Propagation: from a system and a starting state to a trajectory, and from one prepared system and many states."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Never
 
 from canon.flow.checked_request import hamilton_equations_of
@@ -9,7 +10,7 @@ from canon.flow.request import Request, refuse_unknown
 from canon.flow.run.hamiltonian_system import HamiltonianSystem
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.run_record import recorded
-from canon.flow.system_request import any_task
+from canon.flow.system_request import any_task, course_before_start, task_from
 from canon.flow.trajectory import Interrupted, Trajectory, finished
 from canon.progress import reporting
 
@@ -20,13 +21,14 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from sympy import Expr, Symbol
 
+    from canon.flow.checked_request import HamiltonianCourse
     from canon.flow.method.method_text import MethodGiven
     from canon.flow.run.event import Event
     from canon.flow.system.recognised_system import MovableSystem
 
 __all__ = [
-    "HamiltonianSystem", "Interrupted", "NonFiniteStateError", "Trajectory", "is_separable", "propagate",
-    "propagated",
+    "HamiltonianSystem", "Interrupted", "NonFiniteStateError", "PreparedMotion", "Trajectory", "is_separable",
+    "prepare", "prepared", "propagate", "propagated",
 ]  # fmt: skip
 
 
@@ -200,6 +202,129 @@ def propagated(request: Request, progress: Callable[[float], None] | bool | None
     task, moving = any_task(request)
     with reporting(progress) as report:
         return finished(recorded(task, report, moving=moving))
+
+
+@dataclass(frozen=True, eq=False)
+class PreparedMotion:
+    """A motion without its start, made by :func:`canon.prepare`.
+
+    Parameters
+    ----------
+    request
+        What is to be done, as :func:`canon.propagate` takes it.
+    course
+        What was made of it before any start; None of systems whose equations depend on the start.
+    """
+
+    request: Request
+    course: HamiltonianCourse | None = field(repr=False)
+
+    def propagate(
+        self,
+        y0: Sequence[Any] | npt.NDArray[Any] | Mapping[Any, Any] | str | None = None,
+        *,
+        progress: Callable[[float], None] | bool | None = None,
+    ) -> Trajectory:
+        """Return the motion from a start, bit for bit the one of :func:`canon.propagate`.
+
+        Parameters
+        ----------
+        y0, progress
+            As :func:`canon.propagate` takes them.
+
+        Raises
+        ------
+        KeyError, TypeError, ValueError, NonFiniteStateError, Interrupted
+            As :func:`canon.propagate` documents them; all that depends on the start is checked each time.
+
+        Examples
+        --------
+        >>> from canon import prepare
+        >>> prepare("kepler", (0, 10), samples=2).propagate([1.0, 0.0, 0.0]).final
+        Traceback (most recent call last):
+            ...
+        ValueError: y0 has shape (3,); 2 coordinates and 2 momenta make a state (q, p) of shape (4,), ...
+        """
+        if self.course is None:
+            return propagated(replace(self.request, y0=y0), progress)
+        task = task_from(self.course, self.request, y0)
+        with reporting(progress) as report:
+            return finished(recorded(task, report))
+
+
+def prepare(
+    system: MovableSystem,
+    t_span: tuple[float | Fraction, float | Fraction],
+    *,
+    method: MethodGiven | None = None,
+    step: float | None = None,
+    tolerance: float | None = None,
+    max_step: float | None = None,
+    precision: str | int | None = None,
+    parameters: Mapping[Symbol | str, Any] | None = None,
+    samples: int | None = None,
+    times: npt.ArrayLike | None = None,
+    observables: Mapping[str, Expr] | None = None,
+    cadence: int | None = None,
+    events: Sequence[Event] = (),
+    dense: bool = False,
+    **unknown: Never,
+) -> PreparedMotion:
+    """Check and work out all of a motion but its start, for many starts one after the other.
+
+    A call of its ``propagate`` takes a part of the time that :func:`canon.propagate` takes beside the steps
+    (``benchmarks/preparation.py``), and finds the same to the last bit. Many starts that are known together go side
+    by side instead, ``propagate(system, t_span, y0)`` with y0 of shape (2n, orbits).
+
+    Parameters
+    ----------
+    system, t_span, method, step, tolerance, max_step, precision, parameters, samples, times, observables, cadence
+        As :func:`canon.propagate` takes them. Gained is on Hamiltonians, their scenes and maps; the equations of other
+        systems depend on where they start, and are looked at each time.
+    events, dense
+        Likewise.
+    **unknown
+        Nothing: what other libraries call an argument is refused, as by :func:`canon.propagate`.
+
+    Returns
+    -------
+    PreparedMotion
+        A frozen value; ``prepared.propagate(y0)`` returns a :class:`canon.flow.Trajectory`.
+
+    Raises
+    ------
+    KeyError, TypeError, ValueError
+        As :func:`canon.propagate`, for what is wrong whatever the start.
+
+    Examples
+    --------
+    >>> from canon import Splitting, prepare, propagate
+    >>> by = {"method": Splitting("kahan-li-8"), "step": 0.1, "samples": 10}
+    >>> prepared = prepare("simple-pendulum", (0, 100), **by)
+    >>> motions = [prepared.propagate([angle, 0.0]) for angle in (0.5, 1.0, 1.5)]
+    >>> alone = propagate("simple-pendulum", (0, 100), [1.5, 0.0], **by)
+    >>> bool((motions[2].y == alone.y).all()), bool(abs(motions[0].energy_error).max() < 1e-8)
+    (True, True)
+    """
+    refuse_unknown(unknown, "prepare")
+    return prepared(
+        Request(
+            system, t_span, method=method, step=step, tolerance=tolerance, max_step=max_step, precision=precision,
+            parameters=parameters, samples=samples, times=times, observables=observables, cadence=cadence,
+            events=events, dense=dense,
+        )
+    )  # fmt: skip
+
+
+def prepared(request: Request) -> PreparedMotion:
+    """Return the motion of a request without its start, as :func:`prepare` does.
+
+    Raises
+    ------
+    KeyError, TypeError, ValueError
+        As :func:`canon.propagate` documents them.
+    """
+    return PreparedMotion(replace(request, y0=None), course_before_start(request))
 
 
 def is_separable(hamiltonian: HamiltonianSystem, parameters: Mapping[Symbol | str, Any]) -> bool:

@@ -41,8 +41,15 @@ _ELSEWHERE = {
 }
 
 
-def refuse_unknown(unknown: Mapping[str, object]) -> None:
+def refuse_unknown(unknown: Mapping[str, object], function: str = "propagate") -> None:
     """Refuse arguments that :func:`canon.flow.propagation.propagate` does not have, saying what is given instead.
+
+    Parameters
+    ----------
+    unknown
+        The arguments.
+    function
+        Which function was called; :func:`canon.prepare` has the same arguments but the start.
 
     Raises
     ------
@@ -63,7 +70,9 @@ def refuse_unknown(unknown: Mapping[str, object]) -> None:
         hint = _ELSEWHERE.get(name) or (
             f"did you mean {near[0]}=?" if near else f"it has {', '.join(known[3:])}"
         )
-        said.append(f"propagate has no argument {name}=: {hint}")
+        if function == "prepare" and (name in ("y0", "progress") or hint == _ELSEWHERE["x0"]):
+            hint = "what it returns takes the start, prepare(…).propagate(y0)"
+        said.append(f"{function} has no argument {name}=: {hint}")
     if said:
         raise TypeError("; ".join(said))
 

@@ -75,9 +75,7 @@ class RunRecord:
     @cached_property
     def whole(self) -> Samples:
         """The samples, of one orbit without the axis of the orbits."""
-        if not self.task.single:
-            return self.samples
-        return replace(self.samples, y=self.samples.y[:, :, 0], carried=self.samples.carried[:, :, 0])
+        return self.samples.of_one() if self.task.single else self.samples
 
     @cached_property
     def shown(self) -> Samples:
@@ -320,7 +318,7 @@ def _carried_out(
     record = RunRecord(task.ended(found), found, moving)
     defect = record.measured.defect
     if task.system.autonomous and not any(met.after is not None for met in found.crossings):
-        start = np.zeros(1) if moving is not None else np.atleast_1d(record.energies.values[0])
+        start = np.zeros(1) if moving is not None else record.energies.values[0].reshape(-1)
         warn_of_jumps(task.system, found, start, defect.reshape(len(defect), -1))
     if moving is not None:
         check_left_out(moving, found)

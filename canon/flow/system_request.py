@@ -14,7 +14,14 @@ import numpy as np
 from sympy import Expr, Symbol, sympify
 from sympy.core.function import AppliedUndef
 
-from canon.flow.checked_request import functions_by_name, parted_by_orbit, task_of, task_with, two_ends
+from canon.flow.checked_request import (
+    course_of,
+    course_with,
+    functions_by_name,
+    parted_by_orbit,
+    refuse_swapped,
+    two_ends,
+)
 from canon.flow.equations.bounce import with_bounces
 from canon.flow.equations.first_order_motion import moving_system
 from canon.flow.equations.holonomic_motion import with_constraints_kept
@@ -31,7 +38,7 @@ from canon.flow.system.hamiltonian_map import (
 )
 from canon.flow.system.parameter_values import SpareParameters, check_given, check_known, check_parameters
 from canon.flow.system.recognised_system import recognised
-from canon.flow.system.scene_as_system import is_scene, opened
+from canon.flow.system.scene_as_system import is_named, is_scene, opened, scene_of
 from canon.flow.system.start_of_motion import check_constraints, state_in_order
 from canon.kernel.llvm.number_types import double_pair
 from canon.kernel.program.hamilton_equations import exact_number, exact_numbers
@@ -44,13 +51,16 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from canon.array import Array
+    from canon.flow.checked_request import HamiltonianCourse
     from canon.flow.equations.first_order_motion import Contacts, FirstOrderMotion, MovingSystem
     from canon.flow.method.method import Method
     from canon.flow.request import Request
     from canon.flow.system.recognised_system import RecognisedSystem
     from canon.flow.task import Task
 
-__all__ = ["any_task", "is_hamiltonian", "needs_hamiltonian", "refuse_contacts"]
+__all__ = [
+    "any_task", "course_before_start", "is_hamiltonian", "needs_hamiltonian", "refuse_contacts", "task_from",
+]  # fmt: skip
 
 
 def is_hamiltonian(system: Any) -> bool:
@@ -98,24 +108,60 @@ def any_task(request: Request) -> tuple[Task, MovingSystem | None]:
     TypeError, KeyError, ValueError
         As :func:`canon.flow.propagation.propagate` documents them.
     """
-    _check_events(request.events)
-    _check_parameters(request.parameters)
-    scene = is_scene(request.system)
+    course = course_before_start(request)
+    if course is not None:
+        return task_from(course, request, request.y0), None
     if is_rates_function(request.system):
-        begin, _ = two_ends(request.t_span, request.y0)
+        refuse_swapped(request.t_span, request.y0)
+        begin, _ = two_ends(request.t_span)
         request = replace(request, system=read_at_start(request.system, float(begin), request.y0))
-    if scene:
+    if is_scene(request.system):
         system, y0, parameters = opened(request.system, request.y0, request.parameters or {})
         request = replace(request, system=system, y0=y0, parameters=SpareParameters(parameters))
+    return _system_task(request)
+
+
+def task_from(course: HamiltonianCourse, request: Request, y0: Any) -> Task:
+    """Return the task of a start on the course of a request; of a scene it may have a name.
+
+    Raises
+    ------
+    TypeError, KeyError, ValueError
+        As :func:`canon.flow.propagation.propagate` documents them.
+    """
+    refuse_swapped(request.t_span, y0)
+    if is_named(y0) and is_scene(request.system):
+        y0 = opened(request.system, y0, {}).y0
+    return course.task(y0)
+
+
+def course_before_start(request: Request) -> HamiltonianCourse | None:
+    """Return the course of a request where it can be known before the start: of Hamiltonians, their scenes and maps.
+
+    The equations of other systems depend on where they start: None of those.
+
+    Raises
+    ------
+    TypeError, KeyError, ValueError
+        As :func:`canon.flow.propagation.propagate` documents them.
+    """
+    _check_events(request.events)
+    _check_parameters(request.parameters)
+    if is_rates_function(request.system):
+        return None
+    if is_scene(request.system):
+        scene = scene_of(request.system)
+        if not scene.is_free:
+            return None
+        system, _, parameters = opened(scene, (), request.parameters or {})
+        request = replace(request, system=system, parameters=SpareParameters(parameters))
     if isinstance(request.system, HamiltonianMap):
-        return _map_task(request, request.system), None
-    if not is_hamiltonian(request.system):
-        return _system_task(request)
-    return _hamiltonian_task(request), None
+        return _map_course(request, request.system)
+    return _hamiltonian_course(request) if is_hamiltonian(request.system) else None
 
 
-def _map_task(request: Request, system: HamiltonianMap) -> Task:
-    """Return the task of iterating a map.
+def _map_course(request: Request, system: HamiltonianMap) -> HamiltonianCourse:
+    """Return the course of iterating a map.
 
     Raises
     ------
@@ -127,24 +173,22 @@ def _map_task(request: Request, system: HamiltonianMap) -> Task:
             raise ValueError(f"{name}={given}: a map has no {name}, it is iterated; leave {name} out")
     if request.events or request.cadence is not None:
         raise ValueError("a map has no states between its iterations: leave events and cadence out")
-    begin, end = two_ends(request.t_span, request.y0)
+    begin, end = two_ends(request.t_span)
     check_whole(begin)
     check_whole(end)
     method = KICK_AND_DRIFT if end > begin else DRIFT_AND_KICK
-    made = _hamiltonian_task(replace(request, system=system.hamiltonian, method=method, step=1.0))
-    return replace(made, system=kicked(made.system))
+    made = _hamiltonian_course(replace(request, system=system.hamiltonian, method=method, step=1.0))
+    return replace(made, course=replace(made.course, system=kicked(made.course.system)))
 
 
-def _hamiltonian_task(request: Request) -> Task:
-    """Return the task of a Hamiltonian's motion."""
+def _hamiltonian_course(request: Request) -> HamiltonianCourse:
+    """Return the course of a Hamiltonian's motion."""
     variables = (*request.system.q, *request.system.p)
-    if isinstance(request.y0, Mapping):
-        request = replace(request, y0=state_in_order(request.y0, variables))
     if request.parameters:
         check_given(request.parameters, _free_symbols(request.system.H), (*variables, request.system.t))
         if not isinstance(request.parameters, SpareParameters):
             check_known(request.parameters, _symbols_of(request) - {*variables, request.system.t})
-    return task_of(request)
+    return course_of(request)
 
 
 @functools.lru_cache(maxsize=64)
@@ -192,7 +236,8 @@ def _unneeded_but_given(
 def _system_task(request: Request) -> tuple[Task, MovingSystem]:
     """Return the task of a system without a Hamiltonian."""
     y0: Any = request.y0
-    ends = two_ends(request.t_span, y0)
+    refuse_swapped(request.t_span, y0)
+    ends = two_ends(request.t_span)
     found, given = recognised(request.system), dict(request.parameters or {})
     variables = (*found.state, found.t)
     observed = {name: _plain(f, variables) for name, f in functions_by_name(request.observables).items()}
@@ -229,7 +274,7 @@ def _system_task(request: Request) -> tuple[Task, MovingSystem]:
         moving = with_lie_poisson_parts(request.system, moving, exact_numbers(fixed), orbits_of)
     full = _full_states(moving, states, varying, orbits)
     checked = replace(request, method=chosen, observables=observed, events=met)
-    return task_with(checked, moving.equations, full, ends, single=single), moving
+    return course_with(checked, moving.equations, ends).task(full, single=single), moving
 
 
 def _plain(f: Any, variables: Sequence[Symbol]) -> Expr:

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon import RK4, Gauss, Hamiltonian, Splitting, Taylor, choose, coordinates, propagate
+from canon import DOP853, RK4, Gauss, Hamiltonian, Splitting, Taylor, choose, coordinates, propagate
 from canon.flow.method.method import TimeTransformed
 from canon.flow.method.setting import Setting
 from canon.flow.method.solvable_splitting import WisdomHolman
 from canon.scene import find
 from canon.study.errors import StudyError
-from canon.study.method_choice.candidate import candidate_methods
+from canon.study.method_choice import candidate
+from canon.study.method_choice.candidate import HOPELESS, candidate_methods
 from canon.study.method_choice.choice_question import Question
 from canon.study.method_choice.error_law import expected_error
 from canon.study.method_choice.pilot_run import Pilot, pilot
@@ -330,3 +331,30 @@ def test_a_motion_that_can_not_be_followed():
 @pytest.mark.parametrize("rung", range(3, 19))
 def test_rungs_of_tolerance_are_orders(rung):
     assert Taylor(tolerance_at(rung)).order == rung + 1
+
+
+def test_what_is_taken_step_by_step_in_python_is_tried_where_it_may_be_the_cheapest():
+    kepler = find("kepler")
+    span = 200 * kepler.time_scale(kepler.values)
+    alone = choose(kepler, span, accuracy=1e-6, methods=[DOP853()])
+    assert alone.reached
+    assert alone.chosen.tolerance is not None
+    beside = choose(kepler, span, accuracy=1e-6, methods=[Taylor(), DOP853()])
+    (left_out,) = [each for each in beside.candidates if each.method.family == "dop853"]
+    assert left_out.note == "dearer at any tolerance"
+    # It was right to: what it costs where it is tried.
+    assert alone.predicted_cost > HOPELESS * beside.predicted_cost
+
+
+def test_only_the_first_step_of_a_method_is_timed(monkeypatch):
+    timed = []
+    own = candidate.seconds_per_time
+    monkeypatch.setattr(candidate, "seconds_per_time", lambda *given: timed.append(given) or own(*given))
+    pendulum = find("simple-pendulum")
+    question = Question(pendulum.hamiltonian, pendulum.state("wide"), pendulum.values, 4000.0)
+    first = candidate.tried_with(question, Setting(Splitting("kahan-li-8"), 0.1), 200.0)
+    second = candidate.tried_with(question, Setting(Splitting("kahan-li-8"), 0.05), 200.0, first)
+    assert len(timed) == 1
+    assert second.cost == pytest.approx(2 * first.cost, rel=0.01)
+    # So it is where it is timed.
+    assert 0.4 < candidate.tried_with(question, second.pilot.setting, 200.0).cost / second.cost < 2.5

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -107,10 +108,12 @@ def test_pilots_alone_see_nothing_of_kozais_motion_and_the_run_says_so(monkeypat
     blinded(monkeypatch)
     choice = chosen_for("kozai 86", methods=[Splitting("kahan-li-8")])
     assert choice.reached
-    with pytest.warns(
-        AccuracyWarning, match=r"energy to 1e-10 was asked .* but the motion shows .* smaller step"
-    ):
+    # In compensated doubles, which timings may choose, the motion comes to a collision and a second warning says so.
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always", AccuracyWarning)
         motion = choice.run()
+    said = r"energy to 1e-10 was asked .* but the motion shows .* smaller step"
+    assert any(re.search(said, str(each.message)) for each in told)
     assert np.abs(motion.energy_error).max() > 1e3 * choice.accuracy
 
 

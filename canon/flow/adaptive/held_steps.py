@@ -8,6 +8,7 @@ motion has come far from a term.
 from __future__ import annotations
 
 import copy
+import functools
 import itertools
 from dataclasses import dataclass
 from fractions import Fraction
@@ -54,7 +55,7 @@ class LocalisedTerms:
     ) -> LocalisedTerms:
         """Return those of Hamilton's equations, for numbers of one kind or a larger tolerance."""
         levels = sights(max(tolerance or 0.0, spacing(number)))
-        return cls(system, exponents_of(system.graph, system.rates), levels, number, unit, forward)
+        return cls(system, _exponents(system), levels, number, unit, forward)
 
     def near(self, largest: Array) -> bool:
         """Return whether all terms are well in sight where their exponents have these sizes."""
@@ -82,6 +83,12 @@ class LocalisedTerms:
         """Weigh the stops of an integrator, so that none of them makes the tolerance coarse for the state."""
         sizes = np.where(np.isfinite(largest), np.maximum(largest, self.levels[0]), _LARGEST)
         integrator.pars[:] = [self.number(Fraction(1) / Fraction(x)) for x in sizes.tolist()]
+
+
+@functools.lru_cache(maxsize=64)
+def _exponents(system: HamiltonEquations) -> tuple[int, ...]:
+    """Return the exponents of the localised terms of equations, of an earlier motion's where there was one."""
+    return exponents_of(system.graph, system.rates)
 
 
 def stops_at(functions: Sequence[Any], levels: Sequence[Any], forward: int) -> list[Any]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from canon.kernel.heyoka_bridge import taylor_integrator
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from fractions import Fraction
 
     from canon.kernel.program.hamilton_equations import HamiltonEquations
@@ -35,12 +35,12 @@ class SpareIntegrators:
     unit: Fraction
     _kept: list[Any] = field(default_factory=list[Any])
 
-    def take(self, start: Sequence[Fraction], t0: Fraction) -> Any:
-        """Return one that was put aside, in whatever state, or a new one."""
+    def take(self, start: Callable[[], Sequence[Fraction]], t0: Fraction) -> Any:
+        """Return one that was put aside, in whatever state, or a new one, in the state that is then asked for."""
         try:
             return self._kept.pop()
         except IndexError:
-            return taylor_integrator(self.system, start, t0, self.tolerance, unit=self.unit)
+            return taylor_integrator(self.system, start(), t0, self.tolerance, unit=self.unit)
 
     def put_aside(self, integrators: Sequence[Any]) -> None:
         """Keep integrators of motions that have ended."""

@@ -21,7 +21,7 @@ from canon.kernel.heyoka_bridge import taylor_integrator
 from canon.kernel.program.series_gaps import may_have_gaps
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from canon.array import Array
     from canon.flow.adaptive.taylor_events import TaylorEvents
@@ -289,20 +289,23 @@ def orbits_of(
     starts = numbers_of(states, number, taylor_events.unit).T
     unit, events = taylor_events.unit, taylor_events.heyoka_events()
     terms = LocalisedTerms.of(system, number, method.tolerance, unit, taylor_events.forward)
-    exact = [
-        Fraction(a) + Fraction(b) for a, b in zip(*(part[:, 0].tolist() for part in states), strict=True)
-    ]
-    settings = system, exact, t0, method.tolerance, number
+
+    def exact() -> list[Fraction]:
+        pairs = zip(*(part[:, 0].tolist() for part in states), strict=True)
+        return [Fraction(a) + Fraction(b) for a, b in pairs]
+
+    def made_with(beside: Mapping[str, Any]) -> Any:
+        return taylor_integrator(system, exact(), t0, method.tolerance, number, beside, unit)
 
     @functools.cache
     def held() -> Any:
-        return taylor_integrator(*settings, terms.beside({}), unit)
+        return made_with(terms.beside({}))
 
     if number is float and not events:
         first = spare_integrators(system, method.tolerance, unit).take(exact, t0)
     else:
-        first = taylor_integrator(*settings, terms.beside(events) if events else events, unit)
-    free = taylor_integrator(*settings, unit=unit) if events else None
+        first = made_with(terms.beside(events) if events else events)
+    free = made_with({}) if events else None
     longest = None if max_step is None else number(Fraction(max_step))
     tested = _is_tested(system, first.order)
     made = list[TaylorOrbit]()

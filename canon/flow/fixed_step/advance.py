@@ -60,6 +60,8 @@ class AdvancedStates:
 
     def first(self, samples: int) -> AdvancedStates:
         """Return the first so many samples of this run."""
+        if samples == self.high.shape[1]:
+            return self
         watched = None if self.watched is None else self.watched[: samples - 1]
         high, low = self.high[:, :samples], self.low[:, :samples]
         return AdvancedStates(high, low, watched, self.beyond[:samples], self.iterations, self.cpu_seconds)
@@ -74,7 +76,7 @@ def advance_orbits(
     progress: Callable[[float], None] = lambda _: None,
     watch: LoopObservables | None = None,
     memory: Memory | None = None,
-    rows: Memory | None = None,
+    rows: Sequence[int] | None = None,
     many: int = _MANY,
 ) -> AdvancedStates:
     """Advance orbits step by step and keep their states at the wanted step numbers.
@@ -111,8 +113,8 @@ def advance_orbits(
     buffers = LoopBuffers(loop, high, low, coefficients, watch, memory)
     rows_kept, watched = _Rows(buffers, len(stops)), list[Array]()
     started, slices = time.thread_time(), _Slices(buffers, stops[0], stops[-1], rows, progress)
-    numbers = np.array(stops, dtype=np.int64)
     one_by_one = watch is not None or len(stops) < many
+    numbers = np.array(() if one_by_one else stops, dtype=np.int64)
     try:
         while (sample := rows_kept.count) < len(stops):
             ahead = 0 if one_by_one else slices.stops_ahead(numbers[sample : sample + rows_kept.room])
@@ -160,7 +162,7 @@ class _Slices:
         buffers: LoopBuffers,
         first: int,
         last: int,
-        rows: Memory | None,
+        rows: Sequence[int] | None,
         progress: Callable[[float], None],
     ) -> None:
         self.buffers, self.rows, self.progress = buffers, rows, progress
@@ -224,7 +226,7 @@ class _Rows:
         at_once = max(1, min(samples, _KEPT_NUMBERS // buffers.y.size))
         self._y = np.empty((at_once, *buffers.y.shape), dtype=buffers.y.dtype)
         self._e = np.empty((at_once, *buffers.e.shape), dtype=buffers.e.dtype)
-        self._beyond = np.empty((samples, *buffers.beyond().shape), dtype=buffers.e.dtype)
+        self._beyond = np.empty((samples, *buffers.beyond_in(buffers.e).shape), dtype=buffers.e.dtype)
 
     def keep(self) -> None:
         """Keep the state that the buffers has reached."""
@@ -250,7 +252,7 @@ class _Rows:
 
     def _order(self) -> None:
         part, new = slice(self._ordered, self.count), self.count - self._ordered
-        self._kept[:, :, part] = self.buffers.states_in(self._y[:new], self._e[:new])
+        self._kept[0, :, part], self._kept[1, :, part] = self.buffers.states_in(self._y[:new], self._e[:new])
         self._beyond[part] = self.buffers.beyond_in(self._e[:new])
         self._ordered = self.count
 

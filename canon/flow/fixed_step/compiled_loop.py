@@ -50,6 +50,9 @@ __all__ = ["check_splitting", "compiled_loop", "steps_between"]
 _KEPT = 64
 """Compiled loops kept for the next call."""
 
+_FEW_STOPS = 1001
+"""What is read of plans with so many samples is kept for the next motion that has the same plan."""
+
 _INTERLEAVED = 4
 """SIMD registers' worth of orbits stepped together: while one waits for a root or a quotient, others compute."""
 
@@ -295,9 +298,16 @@ def _kept_solvable(system: HamiltonEquations, method: SolvableSplitting, precisi
 
 def steps_between(loop: Loop, method: Method, plan: Plan) -> PartialSteps:
     """Return what takes steps of any length between those of a run."""
+    return (_kept_steps if len(plan.stops) <= _FEW_STOPS else _steps)(loop, method, plan)
+
+
+def _steps(loop: Loop, method: Method, plan: Plan) -> PartialSteps:
     assert plan.h is not None
     coefficients = loop.coefficients or functools.partial(_COEFFICIENTS[method.family], method, loop.number)
     return PartialSteps(loop, coefficients, plan.start, plan.h)
+
+
+_kept_steps = functools.lru_cache(maxsize=_KEPT)(_steps)
 
 
 def _of_gauss(method: Gauss, number: MachineType, h: Fraction) -> list[Fraction]:

@@ -15,7 +15,7 @@ import numpy as np
 
 from canon.flow.fixed_step.advance import AdvancedStates, Interruption, advance_orbits
 from canon.flow.fixed_step.compiled_loop import steps_between
-from canon.flow.fixed_step.partial_step import LoopState, coefficient_pairs
+from canon.flow.fixed_step.partial_step import LoopState
 from canon.flow.fixed_step.statistics import check_cadence, statistics
 from canon.flow.fixed_step.steps_with_events import run_with_events
 from canon.flow.run.samples import Samples
@@ -94,22 +94,21 @@ def fixed_steps(
     stops, memory = plan.stops[first:], None if so_far is None else so_far.beyond
     if watch is not None:
         check_cadence(watch, stops)
-    pairs = coefficient_pairs(steps.coefficients, steps.t0, steps.h)
     met, end = (), Fraction(0)
     if events:
         start = LoopState(*states, memory)
         found, met, end = run_with_events(system, steps, start, stops, events, progress)
         runs = [found]
     else:
-        runs = _on_threads(loop, states, pairs, stops, progress, watch, memory, np.array(system.rows))
+        runs = _on_threads(loop, states, steps.pairs, stops, progress, watch, memory, system.rows)
     samples = min(found.high.shape[1] for found in runs)
     runs = [found.first(samples) for found in runs]
-    high, low = (np.concatenate(parts, axis=2) for parts in ([r.high for r in runs], [r.low for r in runs]))
+    high, low = _side_by_side([r.high for r in runs]), _side_by_side([r.low for r in runs])
     t = plan.instants[first : first + samples].copy()
     taken = stops[samples - 1] - stops[0]
     if met and met[-1].event.action == "stop":
         t[-1], taken = met[-1].t, math.ceil(end) - stops[0]
-    beyond = np.concatenate([found.beyond[-1] for found in runs])
+    beyond = runs[0].beyond[-1] if len(runs) == 1 else np.concatenate([found.beyond[-1] for found in runs])
     iterations = taken * orbits
     if loop.implicit:
         iterations = round(float(beyond[:, 0].sum() - (0 if memory is None else memory[:, 0].sum())))
@@ -128,6 +127,10 @@ def fixed_steps(
     )
 
 
+def _side_by_side(parts: Sequence[Array]) -> Array:
+    return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=2)
+
+
 def _on_threads(
     loop: Loop,
     states: tuple[Array, Array],
@@ -136,7 +139,7 @@ def _on_threads(
     progress: Callable[[float], None],
     watch: LoopObservables | None,
     memory: Memory | None,
-    rows: Memory,
+    rows: Sequence[int],
 ) -> list[AdvancedStates]:
     """Run orbits on as many threads as there are processors, each a whole number of blocks."""
     (high, low), lanes = states, loop.number.lanes

@@ -8,11 +8,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from canon.array import all_finite
 from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 from canon.kernel.loops.sampling_loop import sampling_function
 from canon.kernel.loops.statistics_loop import ENTRIES
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from canon.array import Array
     from canon.kernel.llvm.loop import Loop
     from canon.kernel.llvm.machine_code import MachineCode
@@ -71,17 +74,17 @@ class LoopBuffers:
         self.size, self.orbits = high.shape
         self.blocks = self.orbits // number.lanes
         # A compensated state starts with its low part in the compensation, any other rounds it to its type.
-        into_y, into_e = (np.zeros_like(low), low) if loop.compensated else (low, np.zeros_like(low))
-        self.y = number.packed(self._by_block(high), self._by_block(into_y))
+        low = self._by_block(low)
+        nothing = np.zeros(low.shape)
+        self.y = number.packed(self._by_block(high), nothing if loop.compensated else low)
         self._scalars = self.y.size // (self.blocks * self.size)
         self.e = np.zeros((self.blocks, loop.carry * self._scalars), dtype=number.dtype)
-        carried = self._by_block(into_e)
-        self.e[:, : self.size * self._scalars] = number.packed(carried, np.zeros_like(carried)).reshape(
-            self.blocks, -1
-        )
+        if loop.compensated:
+            self.e[:, : self.size * self._scalars] = number.packed(low, nothing).reshape(self.blocks, -1)
         if memory is not None:
             self.e[:, self.size * self._scalars :] = memory
-        self.c = number.packed(*(np.repeat(part, number.lanes) for part in coefficients))
+        one = number.lanes == 1
+        self.c = number.packed(*(part if one else np.repeat(part, number.lanes) for part in coefficients))
         self._addresses = self.y.ctypes.data, self.e.ctypes.data, self.c.ctypes.data
         self.t0, self.h = (float(part) for part in coefficients[0][:2])
         self.watch = watch
@@ -104,6 +107,8 @@ class LoopBuffers:
     def _by_block(self, states: Array) -> Array:
         """Reorder (2n, orbits) as blocks, components, lanes: shape (blocks · 2n, lanes)."""
         lanes = self.loop.number.lanes
+        if self.orbits == 1:
+            return states
         return states.reshape(self.size, self.blocks, lanes).transpose(1, 0, 2).reshape(-1, lanes)
 
     def advance(self, first: int, steps: int) -> None:
@@ -133,7 +138,7 @@ class LoopBuffers:
 
     def finite(self) -> bool:
         """Return whether every state is finite."""
-        return bool(np.isfinite(self.y).all())
+        return all_finite(self.y)
 
     def states(self) -> tuple[Array, Array]:
         """Return the states as sums of two doubles, each of shape (2n, orbits)."""
@@ -151,6 +156,8 @@ class LoopBuffers:
         times = len(y)
 
         def by_orbit(numbers: Array) -> Array:
+            if self.orbits == 1:
+                return numbers.reshape(times, self.size, 1).transpose(1, 0, 2)
             shaped = numbers.reshape(times, self.blocks, self.size, self.loop.number.lanes)
             return shaped.transpose(2, 0, 1, 3).reshape(self.size, times, self.orbits)
 
@@ -168,7 +175,9 @@ class LoopBuffers:
         """Return what lies beyond the states in copies of these buffers' e, shape (…, blocks, …)."""
         return e[..., self.size * self._scalars :]
 
-    def lost(self, y: Memory, e: Memory, first: int, steps: int, rows: Memory | None) -> NonFiniteStateError:
+    def lost(
+        self, y: Memory, e: Memory, first: int, steps: int, rows: Sequence[int] | None
+    ) -> NonFiniteStateError:
         """Find the last finite state of the first orbit that was lost, halving the slice of steps.
 
         Parameters
@@ -201,7 +210,7 @@ class LoopBuffers:
         state = number.unpacked(y)[0][:, lane]
         change = float(after[(self.size + 1) * self._scalars]) if self.loop.implicit else 0.0
         orbit = block * number.lanes + lane if self.orbits > 1 else None
-        state = state if rows is None else state[rows]
+        state = state if rows is None else state[list(rows)]
         return _complaint(self.loop, self.t0 + first * self.h, first + 1, state, change, orbit)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.cached_property import cached_property
 from canon.flow.fixed_step.loop_buffers import LoopBuffers
 from canon.kernel.llvm.number_types import double_pair
 
@@ -68,6 +69,11 @@ class PartialSteps:
     t0: Fraction
     h: Fraction
 
+    @cached_property
+    def pairs(self) -> tuple[Array, Array]:
+        """What the loop reads for whole steps."""
+        return coefficient_pairs(self.coefficients, self.t0, self.h)
+
     def time(self, n: int, part: Fraction) -> Fraction:
         """Return the time of a part of step n + 1."""
         return self.t0 + (n + part) * self.h
@@ -83,7 +89,6 @@ class PartialSteps:
 
     def whole(self, state: LoopState, n: int, steps: int) -> LoopState:
         """Return the state after whole steps of the run, from the one at t0 + n h."""
-        pairs = coefficient_pairs(self.coefficients, self.t0, self.h)
-        buffers = LoopBuffers(self.loop, state.high, state.low, pairs, memory=state.beyond)
+        buffers = LoopBuffers(self.loop, state.high, state.low, self.pairs, memory=state.beyond)
         buffers.advance(n, steps)
         return LoopState.of(buffers)

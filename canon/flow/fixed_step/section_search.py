@@ -213,8 +213,7 @@ class _Search:
         """Return the places of one block of orbits, found as often as the memory for what is noted is full."""
         loop, lanes = self.steps.loop, self.steps.loop.number.lanes
         code = _kept_search(self.system, self.surface[0], loop, self.direction)
-        pairs = coefficient_pairs(self.steps.coefficients, self.steps.t0, self.steps.h)
-        buffers = LoopBuffers(loop, high, low, pairs)
+        buffers = LoopBuffers(loop, high, low, self.steps.pairs)
         seen = np.zeros((2, lanes), dtype=loop.number.dtype)
         seen[0] = self._values(high, low)
         room = max(_ROOM, 2 * lanes)
@@ -231,7 +230,7 @@ class _Search:
             )  # fmt: skip
             done = int(counts[lanes + 1])
             if not buffers.finite():
-                raise buffers.lost(*before, begun, done - begun, np.array(self.system.rows))
+                raise buffers.lost(*before, begun, done - begun, self.system.rows)
             found.append(self._places(noted, int(counts[lanes]), orbits))
         own = np.unique(orbits).size
         found = found or [self._places(noted, 0, orbits)]

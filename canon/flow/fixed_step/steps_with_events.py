@@ -11,7 +11,7 @@ import numpy as np
 from canon.flow.fixed_step.advance import AdvancedStates, Interruption
 from canon.flow.fixed_step.event_search import EventLocator, compiled_watch
 from canon.flow.fixed_step.loop_buffers import LoopBuffers
-from canon.flow.fixed_step.partial_step import LoopState, PartialSteps, coefficient_pairs
+from canon.flow.fixed_step.partial_step import LoopState, PartialSteps
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -66,7 +66,7 @@ def run_with_events(
     """
     loop, locator = steps.loop, EventLocator(system, steps, events)
     code = compiled_watch(system, events, loop)
-    pairs = coefficient_pairs(steps.coefficients, steps.t0, steps.h)
+    pairs = steps.pairs
     buffers = LoopBuffers(loop, start.high, start.low, pairs, memory=start.beyond)
     kept = np.zeros(1 + 3 * len(events))
     kept[0] = locator.forward
@@ -84,7 +84,7 @@ def run_with_events(
                 code.call(loop.code.address, *(m.ctypes.data for m in memory), first, wanted)
                 n = int(done[0])
                 if not buffers.finite():
-                    raise buffers.lost(*safe, first, n - first, np.array(system.rows))
+                    raise buffers.lost(*safe, first, n - first, system.rows)
                 old = LoopState.of(buffers)
                 new, part, known = locator.locate(n - 1, LoopState.in_copy(buffers, *before), old)
                 if not known:  # stopped, maybe at the very end of the step

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from canon.array import all_finite
 from canon.expression.graph.number_systems import FLOAT64, LONGDOUBLE, multiprecision
 from canon.kernel.program.localised_terms import exponents_of
 from canon.kernel.quad_arithmetic import quad_array, quad_for
@@ -44,6 +45,9 @@ _VANISHING = 1e-6
 _NARROWER_THAN_QUAD = ("single", "double", "compensated", "extended", "double-double")
 """Precisions of states whose functions are evaluated in 113 bits, where long doubles do not do."""
 
+_FEW = 4
+"""Functions of so many states are evaluated one by one."""
+
 _WIDE = bool(np.finfo(np.longdouble).nmant >= 63)
 
 
@@ -59,7 +63,7 @@ def measured(
     """
     values = _values_for(system, nodes, precision)
     found = values(system, nodes, samples.t, samples.y, samples.carried)
-    return [(_rounded(value), _rounded(value - value[0])) for value in found]
+    return [(_rounded(value), _rounded(value - value[:1])) for value in found]
 
 
 def _rounding_of(precision: str) -> float:
@@ -201,8 +205,8 @@ def _terms(system: HamiltonEquations) -> tuple[int, ...]:
 
 
 def _rounded(values: npt.NDArray[Any]) -> Array:
-    rounded = np.array(values, dtype=np.float64)
-    if not np.isfinite(rounded).all():
+    rounded = values.astype(np.float64)
+    if not all_finite(rounded):
         raise ArithmeticError(
             "the energy or an observable is not finite at a sample: it left its own domain there"
         )
@@ -212,10 +216,25 @@ def _rounded(values: npt.NDArray[Any]) -> Array:
 def _wide_values(
     system: HamiltonEquations, nodes: Sequence[int], t: Array, y: Array, carried: Array
 ) -> list[npt.NDArray[Any]]:
-    state = y.astype(np.longdouble) + carried.astype(np.longdouble)
+    state = y.astype(np.longdouble) + carried
+    if state[0].size <= _FEW:
+        return _wide_values_one_by_one(system, nodes, t, state)
     times = t.astype(np.longdouble).reshape((-1,) + (1,) * (y.ndim - 2))
     found = system.graph.evaluate(nodes, dict(zip(system.inputs, (*state, times), strict=True)), LONGDOUBLE)
     return [np.broadcast_to(np.asarray(value, dtype=np.longdouble), y.shape[1:]) for value in found]
+
+
+def _wide_values_one_by_one(
+    system: HamiltonEquations, nodes: Sequence[int], t: Array, state: npt.NDArray[Any]
+) -> list[npt.NDArray[Any]]:
+    """Return the same of a few states: numbers are quicker than arrays of a few numbers."""
+    points, shape = state.reshape(len(state), -1).T, state.shape[1:]
+    times = t.repeat(len(points) // len(t)).astype(np.longdouble)
+    found = [
+        system.graph.evaluate(nodes, dict(zip(system.inputs, (*point, time), strict=True)), LONGDOUBLE)
+        for point, time in zip(points, times, strict=True)
+    ]
+    return [np.array(each, dtype=np.longdouble).reshape(shape) for each in zip(*found, strict=True)]
 
 
 def _quad_values(

@@ -70,14 +70,13 @@ def check_magnitudes(
     start = span[0]
     if precision == "double-double":
         _check_angles(system, state, start)
-    nodes = [*system.velocity, *system.force]
     point = [*state.tolist(), float(start)]
     if method.engine is HEYOKA:
         _check_series(system, point, rates, abs(float(span[1] - start)), method.order)
-    sizes = abs(np.concatenate([state, rates]))
-    ordinary = (sizes == 0) | ((sizes > 1 / _FAR) & (sizes < _FAR))
-    if ordinary.all() and _has_ordinary_parameters(system):
+    ordinary = all(not x or 1 / _FAR < abs(x) < _FAR for x in (*point[:-1], *rates.tolist()))
+    if ordinary and _has_ordinary_parameters(system):
         return
+    nodes = [*system.velocity, *system.force]
     digits = multiprecision(40)
     exact = {s: digits.number(x) for s, x in zip(system.inputs, map(Fraction, point), strict=True)}
     for name, found, node in zip((*system.q, *system.p), rates, nodes, strict=True):

@@ -82,6 +82,13 @@ class Samples:
     dense: tuple[Dense, ...] = ()
     each: tuple[Samples, ...] = ()
 
+    def of_one(self) -> Samples:
+        """Return the samples of the first orbit, without the axis of the orbits."""
+        return Samples(
+            self.t, self.y[:, :, 0], self.carried[:, :, 0], self.steps, self.evaluations, self.step, self.cpu_seconds,
+            self.compile_seconds, self.watched, self.beyond, self.crossings, self.dense, self.each,
+        )  # fmt: skip
+
 
 def side_by_side(each: Sequence[Samples]) -> Samples:
     """Return orbits of the same times, integrated one by one, as one motion."""

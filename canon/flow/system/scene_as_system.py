@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
     from canon.mechanics.lagrange.lagrangian import Lagrangian
 
-__all__ = ["Opened", "SceneLike", "StartLike", "is_scene", "opened"]
+__all__ = ["Opened", "SceneLike", "StartLike", "is_named", "is_scene", "opened", "scene_of"]
 
 
 class StartLike(Protocol):
@@ -127,7 +127,7 @@ def opened(system: str | SceneLike, y0: Any, parameters: Mapping[Symbol | str, A
     >>> found.system.p, found.y0, found.parameters["l"]
     ((p_theta,), array([0.1, 0. ]), 2.0)
     """
-    scene = _by_name(system) if isinstance(system, str) else system
+    scene = scene_of(system)
     own = {s.name: value for s, value in scene.values_by_symbol().items()}
     values: dict[Symbol | str, Any] = {**own}
     for key, value in parameters.items():
@@ -136,9 +136,14 @@ def opened(system: str | SceneLike, y0: Any, parameters: Mapping[Symbol | str, A
             raise KeyError(f"{scene.name} has no parameter {name}; it has {', '.join(own) or 'none'}")
         values[name] = value
     if scene.is_free:
-        return Opened(scene.hamiltonian, _state(scene, y0) if _named(y0) else y0, values)
+        return Opened(scene.hamiltonian, _state(scene, y0) if is_named(y0) else y0, values)
     moving = scene.constrained if scene.is_constrained else scene.lagrangian
-    return Opened(moving, _placed(scene, y0, values) if _named(y0) else y0, values)
+    return Opened(moving, _placed(scene, y0, values) if is_named(y0) else y0, values)
+
+
+def scene_of(system: str | SceneLike) -> SceneLike:
+    """Return a scene, or the one of a name."""
+    return _by_name(system) if isinstance(system, str) else system
 
 
 def _by_name(name: str) -> SceneLike:
@@ -147,7 +152,8 @@ def _by_name(name: str) -> SceneLike:
     return cast("SceneLike", find(name))
 
 
-def _named(y0: Any) -> bool:
+def is_named(y0: Any) -> bool:
+    """Tell whether a start is given as one of a scene's: by its name, or None for the first."""
     return y0 is None or isinstance(y0, str)
 
 

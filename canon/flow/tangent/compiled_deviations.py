@@ -65,7 +65,7 @@ class CompiledDeviations:
         high, low = (part[:, filled] for part in task.states)
         self.buffers = LoopBuffers(loop, high, low, pairs)
         self._behind(self.buffers.e)[:] = self._packed(frame)
-        self.rows = np.array(task.system.rows)
+        self.rows = task.system.rows
         self.renormalise = renormalising_function(deviations, orthogonal=orthogonal)
         self.stops, self.sample, self.every = task.plan.stops, 0, _FIRST
         blocks, width = self.buffers.blocks, lanes * deviations.lanes

@@ -119,7 +119,7 @@ def deviation_task(run: DeviationRun) -> Task:
     request = Request(
         run.system, run.t_span, run.y0, method=run.method, step=run.step, tolerance=run.tolerance,
         precision=run.precision, parameters=run.parameters,
-        times=_uneven(two_ends(run.t_span, run.y0), samples),
+        times=_uneven(two_ends(run.t_span), samples),
     )  # fmt: skip
     task, moving = any_task(request)
     refuse_contacts(moving, "a tangent map")

@@ -15,6 +15,7 @@ from canon.flow.method.number_formats import fixed_precision
 from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 from canon.flow.run.samples import Samples
 from canon.flow.run.sampling_plan import fixed_plan
+from canon.flow.transformed.kept_rows import KeptRows
 from canon.flow.transformed.transformed_orbit import StepEnd, TransformedOrbit
 from canon.kernel.llvm.number_types import DOUBLE, double_pair
 
@@ -28,9 +29,6 @@ if TYPE_CHECKING:
     from canon.flow.transformed.extended_hamiltonian import ExtendedSystem
 
 __all__ = ["RunState", "transformed_motion"]
-
-Row = tuple[float, "Array", "Array"]
-"""A time and the states y + carried there, each of shape (2n, orbits)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,26 +144,26 @@ class _TransformedRun:
         steps = steps_between(self.loop, self.method, fixed_plan(Fraction(0), plan.forward * h, (0,)))
         return TransformedOrbit(frame, steps, step_end, frame.events(self.events), self.bits, self._report)
 
-    def _kept_before(self) -> tuple[list[Row], RunState]:
+    def _kept_before(self) -> tuple[KeptRows, RunState]:
         """Return the times and states that are kept already, and where the motion stands."""
         if self.so_far is None:
             step_ends = tuple(orbit.step_end for orbit in self.orbits)
-            return [(float(self.start), *self.states)], RunState(step_ends, rows=1)
+            high, low = (part[:, np.newaxis] for part in self.states)
+            return KeptRows(np.array([float(self.start)]), high, low), RunState(step_ends, rows=1)
         state: RunState = self.so_far.beyond
         count = state.rows - bool(state.arrived and self.plan.wanted)
-        parts = (np.moveaxis(part, 1, 0) for part in (self.so_far.y, self.so_far.carried))
-        rows = list(zip(self.so_far.t.tolist(), *parts, strict=True))[:count]
-        return rows, replace(state, rows=count, arrived=False)
+        known = KeptRows(self.so_far.t[:count], self.so_far.y[:, :count], self.so_far.carried[:, :count])
+        return known, replace(state, rows=count, arrived=False)
 
     def _report(self, t: float) -> None:
         if self.count == 1:
             self.progress(min(1.0, float((Fraction(t) - self.start) / (self.end - self.start))))
 
-    def _row(self, t: float, states: Sequence[LoopState]) -> Row:
+    def _row(self, t: float, states: Sequence[LoopState]) -> tuple[Array, Array, Array]:
         high, low = (
             np.concatenate(parts, axis=1) for parts in ([s.high for s in states], [s.low for s in states])
         )
-        return t, high[self.frame.rows], low[self.frame.rows]
+        return np.array([t]), high[self.frame.rows, np.newaxis], low[self.frame.rows, np.newaxis]
 
     # at the times that are asked for -------------------------------------------------------------------
 
@@ -179,7 +177,7 @@ class _TransformedRun:
                 states.append(orbit.state_at(goal).state if orbit.go(goal) else orbit.state)
             # Where there are events there is one orbit.
             ended = first.stopped and not first.go(goal)
-            rows.append(self._row(first.time if ended else instants[k], states))
+            rows.add(*self._row(first.time if ended else instants[k], states))
             step_ends = tuple(orbit.before for orbit in self.orbits)
             self.kept = rows, RunState(step_ends, rows=k + 1, arrived=ended or k + 1 == len(instants))
             if self.count > 1:
@@ -195,53 +193,52 @@ class _TransformedRun:
         stride, most = state.stride, 2 * self.plan.wanted
         while True:
             more = self._leap(orbit, stride, most + 1 - len(rows))
-            if not more:
+            if more is None:
                 reached = orbit.go(end, (orbit.n // stride + 1) * stride)
                 if reached or orbit.stopped:
                     break
-                more = [self._row(orbit.time, [orbit.state])]
-            rows += more
+                more = self._row(orbit.time, [orbit.state])
+            rows.add(*more)
             if len(rows) > most:
-                rows, stride = rows[::2], 2 * stride
+                rows, stride = rows.every_other(), 2 * stride
             self.kept = rows, RunState((orbit.step_end,), stride, len(rows))
             if orbit.interrupted:
                 raise KeyboardInterrupt
         last = orbit.state_at(end).state if reached else orbit.state
-        rows = [*rows, self._row(float(end) if reached else orbit.time, [last])]
+        rows.add(*self._row(float(end) if reached else orbit.time, [last]))
         self.kept = rows, RunState((orbit.before,), stride, len(rows), arrived=True)
 
-    def _leap(self, orbit: TransformedOrbit, stride: int, most: int) -> list[Row]:
-        """Return the states of many strides taken in one go; none where so many are not surely left."""
+    def _leap(self, orbit: TransformedOrbit, stride: int, most: int) -> tuple[Array, Array, Array] | None:
+        """Return the states of many strides taken in one go; None where so many are not surely left."""
         stops = orbit.strides(self.end, stride)[: most + 1]
         if orbit.n % stride or len(stops) < 2:
-            return []
+            return None
         found = orbit.leap(stops, self.end)
-        if found is None:
-            return []
+        if found is None or found.high.shape[1] < 2:
+            return None
         times = found.high[self.frame.clock, 1:, 0] + found.low[self.frame.clock, 1:, 0]
-        parts = (np.moveaxis(part[self.frame.rows, 1:], 1, 0) for part in (found.high, found.low))
-        return list(zip(times.tolist(), *parts, strict=True))
+        return times, found.high[self.frame.rows, 1:], found.low[self.frame.rows, 1:]
 
     # what came out -------------------------------------------------------------------------------------
 
     def samples(self, seconds: float) -> Samples:
         """Return all of the motion."""
         before, (rows, state) = self.so_far, self.kept
-        t, high, low = zip(*rows[: state.rows], strict=True)
+        t, high, low = rows.first(state.rows)
         ended = state.arrived
         steps = sum(orbit.n for orbit in self.orbits) if ended else sum(f.n for f in state.step_ends)
         work = sum(orbit.work for orbit in self.orbits) * self.method.stages
         return Samples(
-            t=np.array(t),
-            y=np.stack(high, axis=1),
-            carried=np.stack(low, axis=1),
+            t=t,
+            y=high,
+            carried=low,
             steps=steps,
             evaluations=work + (before.evaluations if before else 0),
             step=float(self.frame.step),
             cpu_seconds=seconds + (before.cpu_seconds if before else 0.0),
             compile_seconds=self.loop.code.seconds,
             beyond=state,
-            crossings=self._crossings(t[-1]),
+            crossings=self._crossings(float(t[-1])),
         )
 
     def _crossings(self, last: float) -> tuple[Crossing, ...]:

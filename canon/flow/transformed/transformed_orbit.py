@@ -16,7 +16,7 @@ import numpy as np
 from canon.flow.fixed_step.advance import AdvancedStates, advance_orbits
 from canon.flow.fixed_step.event_search import EventLocator, compiled_watch
 from canon.flow.fixed_step.loop_buffers import LoopBuffers
-from canon.flow.fixed_step.partial_step import LoopState, PartialSteps, coefficient_pairs
+from canon.flow.fixed_step.partial_step import LoopState, PartialSteps
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.transformed.land_at_time import Segment, iterations, state_at_time, time_of
 
@@ -91,7 +91,7 @@ class TransformedOrbit:
     ) -> None:
         self.frame, self.steps, self.events, self.bits, self.report = frame, steps, events, bits, report
         self.forward = 1 if steps.h > 0 else -1
-        self.pairs = coefficient_pairs(steps.coefficients, steps.t0, steps.h)
+        self.pairs = steps.pairs
         self.code = compiled_watch(frame.system, events, steps.loop, frame.clock)
         self.n, self.stopped, self.work, self.interrupted = step_end.n, False, 0, False
         self.before, self.segments, self._earlier = (
@@ -167,7 +167,7 @@ class TransformedOrbit:
     def leap(self, stops: Sequence[int], goal: Fraction) -> AdvancedStates | None:
         """Take steps in one go and return the states at some of them; take them back where they pass a time."""
         start, there, old = self.state, self._there(goal), self.time
-        rows = np.array(self.frame.system.rows)
+        rows = self.frame.system.rows
         try:
             found = advance_orbits(
                 self.steps.loop, start.high, start.low, self.pairs, stops, lambda _: self.report(old),
@@ -213,7 +213,7 @@ class TransformedOrbit:
         self.n = int(done[0])
         self._count(start, buffers.beyond(), self.n - first)
         if not buffers.finite():
-            raise buffers.lost(*safe, first, self.n - first, np.array(self.frame.system.rows))
+            raise buffers.lost(*safe, first, self.n - first, self.frame.system.rows)
         self._read()
         self.before = StepEnd(
             self.n - 1, LoopState.in_copy(buffers, *before), tuple(self.locator.sides), self._met

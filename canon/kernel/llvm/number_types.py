@@ -104,7 +104,7 @@ class MachineType:
         high, low = high.reshape(-1, self.lanes), low.reshape(-1, self.lanes)
         if self.pair:
             return np.stack([high, low], axis=1).ravel()
-        return (high.astype(self.dtype) + low.astype(self.dtype)).ravel()
+        return np.add(high.astype(self.dtype, copy=False), low.astype(self.dtype, copy=False)).ravel()
 
     def unpacked(self, memory: npt.NDArray[Any]) -> tuple[Array, Array]:
         """Return numbers in memory as sums high + low of doubles, each of shape (count, lanes)."""
@@ -112,6 +112,8 @@ class MachineType:
             parts = memory.reshape(-1, 2, self.lanes)
             return parts[:, 0].copy(), parts[:, 1].copy()
         numbers = memory.reshape(-1, self.lanes)
+        if self.scalar == "double":
+            return numbers.copy(), np.zeros(numbers.shape)
         high = numbers.astype(np.float64)
         with np.errstate(invalid="ignore"):
             return high, (numbers - high).astype(np.float64)

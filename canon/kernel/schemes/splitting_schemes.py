@@ -48,6 +48,10 @@ class Scheme:
     nystrom: bool = False
     commutators: tuple[Fraction, ...] = ()
 
+    def __hash__(self) -> int:
+        """Return a hash that takes no time: of the name, which coefficients of one's own lack, and two numbers."""
+        return hash((self.name, self.order, len(self.b)))
+
     @property
     def stages(self) -> int:
         """Force evaluations in a step; where it ends with a kick, its last is the next step's first."""

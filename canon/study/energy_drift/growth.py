@@ -15,7 +15,6 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.special import stdtr
 
 from canon.study.energy_drift.block_means import PLACES, WIDTH, bump, window_starts
 from canon.study.energy_drift.noise_models import (
@@ -27,6 +26,7 @@ from canon.study.energy_drift.noise_models import (
     returning,
     wandering,
 )
+from canon.study.energy_drift.student_t import student_tail
 
 if TYPE_CHECKING:
     from canon.array import Array
@@ -113,7 +113,7 @@ def slope_of(means: Array, false_alarm: float) -> Slope:
     widening = found.freedom / (found.freedom - 2.0)
     error = float(np.sqrt(posterior @ (widening * found.slope_error**2 + (found.slope - value) ** 2)))
     sigmas = found.slope / found.slope_error
-    against = float(min(posterior @ stdtr(found.freedom, -sigmas), posterior @ stdtr(found.freedom, sigmas)))
+    against = float(min(posterior @ student_tail(found.freedom, side) for side in (sigmas, -sigmas)))
     return Slope(value, error, min(1.0, 4.0 * against), _limit(found, posterior, false_alarm))
 
 
@@ -122,11 +122,10 @@ def _limit(found: Fit, posterior: Array, false_alarm: float) -> float:
     widest = float(found.slope_error.max())
 
     def exceeded_with(probability: float) -> float:
-        # Halved by hand: scipy.optimize takes longer to import than the drift of a short run.
         low, high = 0.0, _MOST_SIGMAS
         while high - low > 1e-9:
             middle = (low + high) / 2.0
-            tail = stdtr(found.freedom, -middle * widest / found.slope_error)
+            tail = student_tail(found.freedom, middle * widest / found.slope_error)
             low, high = (middle, high) if float(posterior @ tail) > probability else (low, middle)
         return widest * (low + high) / 2.0
 

@@ -11,15 +11,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.linalg import get_lapack_funcs
 
 from canon.study.energy_drift.block_means import PLACES, WIDTH, bump, window_starts
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    import numpy.typing as npt
 
     from canon.array import Array
 
@@ -156,11 +157,22 @@ def _family(
     ]
     factor = np.linalg.cholesky(np.stack(members))
     log_determinant = 2.0 * np.sum(np.log(np.diagonal(factor, axis1=1, axis2=2)), axis=1)
-    # One by one and as the triangles they are: a stack of full inverses takes many times as long.
-    (invert,) = get_lapack_funcs(("trtri",), (factor[0],))
-    whitener = np.stack([invert(each, lower=1)[0] for each in factor])
+    whitener = _inverse_triangles(factor)
     line = whitener @ (np.diff(window_starts(windows)) / PLACES)
     return NoiseFamily(exponents, ratios, whitener, log_determinant, line)
+
+
+def _inverse_triangles(lower: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """Return the inverses of lower triangles, shape (members, n, n), row by row of all of them at once.
+
+    A stack of full inverses takes many times as long, and SciPy's triangular ones long to import.
+    """
+    found = np.zeros_like(lower)
+    for k in range(lower.shape[1]):
+        found[:, k, k] = 1.0
+        found[:, k, :k] -= (lower[:, k : k + 1, :k] @ found[:, :k, :k])[:, 0]
+        found[:, k, : k + 1] /= lower[:, k, k, np.newaxis]
+    return found
 
 
 def scatter_covariance(windows: int) -> Array:

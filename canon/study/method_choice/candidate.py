@@ -266,8 +266,8 @@ def tried_with(
 ) -> TriedSetting:
     """Return a setting after a pilot run of that span.
 
-    In a fictitious time, where runs to time a step by are dear, a step costs what it did in ``like``, a pilot run of
-    the same method with another step.
+    A step costs what it did in ``like``, a pilot run of the same method with another step, where there is one, in
+    proportion to its evaluations: only the first step of a method is timed.
     """
     found = pilot(question, setting, span)
     if found.lost:
@@ -277,16 +277,19 @@ def tried_with(
         for since, y0 in question.elsewhere:
             later = pilot(question.moved(since, y0), setting, min(span, question.span - since))
             error = max(error, expected_error(later, question.span, question.observable))
-    if like is not None and math.isfinite(like.error) and setting.method.engine is FICTITIOUS_TIME:
-        earlier = like.pilot
-        return TriedSetting(
-            found, error, like.cost * (found.steps / found.span) / (earlier.steps / earlier.span)
-        )
+    if like is not None and math.isfinite(like.error) and setting.method.engine.takes_step:
+        return TriedSetting(found, error, like.cost * _work(found) / _work(like.pilot))
     try:
-        rate = seconds_per_time(question, found.setting, span)
+        rate = seconds_per_time(question, found)
     except NonFiniteStateError:  # with a step a little smaller, to divide another span
         return TriedSetting(found, math.inf, math.inf)
     return TriedSetting(found, error, rate * question.span)
+
+
+def _work(run: Pilot) -> float:
+    """Return what the time of a run is in proportion to, per unit of time of the motion."""
+    counted = run.steps if run.setting.method.engine is FICTITIOUS_TIME else run.evaluations
+    return counted / run.span
 
 
 def by_order(question: Question, tried: TriedSetting, accuracy: float) -> Candidate:

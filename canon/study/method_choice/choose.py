@@ -275,10 +275,7 @@ def _settled(
     question: Question, found: list[Candidate], pilot_span: float, accuracy: float
 ) -> tuple[list[Candidate], Candidate]:
     """Look at the cheapest candidate once more, until the cheapest one has been looked at."""
-    cheapest = min((each.predicted_cost for each in found if each.keeps), default=math.inf)
-    rivals = [each for each in found if each.keeps and each.predicted_cost < RIVAL * cheapest]
-    plain = [double_instead(question, each, pilot_span, accuracy) for each in rivals]
-    waiting = [*found, *(each for each in plain if each is not None)]
+    waiting = [*found, *_in_plain_doubles(question, found, pilot_span, accuracy)]
     looked: list[Candidate] = []
     while able := [each for each in (*waiting, *looked) if each.keeps]:
         best = min(able, key=lambda each: each.predicted_cost)
@@ -287,6 +284,23 @@ def _settled(
         waiting.remove(best)
         looked.append(confirmed(question, best, pilot_span, accuracy))
     return [*waiting, *looked], min((*waiting, *looked), key=lambda each: each.predicted_error)
+
+
+def _in_plain_doubles(
+    question: Question, found: Sequence[Candidate], pilot_span: float, accuracy: float
+) -> list[Candidate]:
+    """Return what plain doubles make cheaper, of candidates that may become the cheapest by them."""
+    made: list[Candidate] = []
+    able = sorted((each for each in found if each.keeps), key=lambda each: each.predicted_cost)
+    cheapest = able[0].predicted_cost if able else math.inf
+    for each in able:
+        if each.predicted_cost >= RIVAL * cheapest:
+            break
+        plain = double_instead(question, each, pilot_span, accuracy)
+        if plain is not None:
+            made.append(plain)
+            cheapest = min(cheapest, plain.predicted_cost)
+    return made
 
 
 def _in_higher_precision(

@@ -13,7 +13,6 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import nnls
 
 from canon.study.energy_drift.drift import FEWEST, Growth, drift
 
@@ -97,6 +96,8 @@ def _position(pilot: Pilot, span: float) -> float:
     symplectic = pilot.setting.method.is_symplectic
     if whole > SATURATED:
         return float(whole * span / pilot.span) if symplectic else math.inf
+    from scipy.optimize import nnls  # takes a third of a second to import
+
     powers = np.array([0.5, 1.0] if symplectic else [0.5, 1.0, 2.0])
     design = t[:, None] ** powers
     late = t.size // 4

@@ -53,7 +53,7 @@ TIMED_SECONDS = 0.004
 TIMINGS = 4
 """Timed runs, of which the least counts: other programs only add to it."""
 
-TIMED_STEPS = 50_000
+TIMED_STEPS = 20_000
 """Steps of the longer of two runs from which the cost of a method in a fictitious time is told."""
 
 
@@ -117,10 +117,11 @@ def pilot(question: Question, setting: Setting, span: float, windows: int = WIND
         return Pilot(setting, span, failure=str(failed))
 
 
-def seconds_per_time(question: Question, setting: Setting, span: float) -> float:
-    """Return the processor time of the steps per unit of time, the least of a few runs."""
+def seconds_per_time(question: Question, run: Pilot) -> float:
+    """Return the processor time of the steps per unit of time, the least of a few runs of a pilot's setting."""
+    setting, span = run.setting, run.span
     if setting.method.engine is FICTITIOUS_TIME:
-        return _seconds_with_landing(question, setting, span)
+        return _seconds_with_landing(question, run)
     trial = span / 64.0
     found = question.run(setting, trial, 1)
     while found.cpu_seconds < TIMED_SECONDS and trial < span:
@@ -130,12 +131,11 @@ def seconds_per_time(question: Question, setting: Setting, span: float) -> float
     return min(found.cpu_seconds, *again) / trial
 
 
-def _seconds_with_landing(question: Question, setting: Setting, span: float) -> float:
+def _seconds_with_landing(question: Question, run: Pilot) -> float:
     """Return the same for a method in a fictitious time, whose stretches and landing take milliseconds of their own."""
-    steps = question.run(setting, span, 1).steps
-    longest = min(question.span, span * TIMED_STEPS / steps)
+    longest = min(question.span, run.span * TIMED_STEPS / run.steps)
     short, long = (
-        min(question.run(setting, trial, 1).cpu_seconds for _ in range(TIMINGS))
+        min(question.run(run.setting, trial, 1).cpu_seconds for _ in range(TIMINGS))
         for trial in (longest / 4.0, longest)
     )
     rate = max(0.0, long - short) / (0.75 * longest)

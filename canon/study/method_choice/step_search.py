@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from canon.flow.method.engine import FICTITIOUS_TIME
+from canon.flow.method.engine import FICTITIOUS_TIME, SCIPY
 from canon.flow.method.setting import Setting
 from canon.study.method_choice.candidate import (
     HOPELESS,
@@ -40,6 +40,10 @@ tries would find more, and cost more than they save where runs are short."""
 LOST = 7
 """After so many steps, each half the one before, with which the motion is lost, the search ends: at two orders of
 magnitude below the time scale of the motion."""
+
+LEAST_SECONDS, LONGEST_STEP = 5e-5, 16.0
+"""What a step taken in Python costs at least, and how many of Taylor's steps to round-off are no longer than a step of
+a Runge–Kutta method may be before it loses the motion; both on the safe side, as measured."""
 
 SAME = 1.02
 """Ratio of steps that are taken for one: their costs differ by less than timings do."""
@@ -88,7 +92,22 @@ def searched(
         Cost of the best candidate so far: the search ends where a method can't come near it.
     """
     if not method.engine.takes_step:
+        if _least_in_python(method, question.span, natural) > HOPELESS * cheapest:
+            return nothing(Setting(method, precision=precision), "dearer at any tolerance")
         return searched_tolerance(question, method, precision, span, accuracy, cheapest)
+    return _searched_step(question, method, precision, span, natural, accuracy, cheapest)
+
+
+def _searched_step(
+    question: Question,
+    method: Method,
+    precision: str,
+    span: float,
+    natural: float,
+    accuracy: float,
+    cheapest: float,
+) -> Candidate:
+    """Return a method of steps at the largest one that is expected to keep the accuracy."""
     # An integral may be kept exactly whatever the step: begin with a large one.
     error = accuracy if question.integral is None else 1.0
     first = _first_step(method, natural, error, span)
@@ -124,6 +143,11 @@ def searched(
     if good.knob * LARGER[-1] <= ceiling:
         good = _still_larger(question, good, span, accuracy, cheapest)
     return _at_best(question, good, accuracy, cheapest)
+
+
+def _least_in_python(method: Method, span: float, natural: float) -> float:
+    """Return the least that a method's steps cost, whatever the tolerance, where they are taken in Python; else 0."""
+    return LEAST_SECONDS * span / (LONGEST_STEP * natural) if method.engine is SCIPY else 0.0
 
 
 def _at_best(question: Question, good: TriedSetting, accuracy: float, cheapest: float) -> Candidate:
