@@ -16,6 +16,7 @@ import sympy as sp
 
 from canon import Event, Hamiltonian, Lagrangian, coordinates, propagate
 from canon import time as t
+from canon.expression.graph.graph import Graph
 from canon.flow import NonFiniteStateError
 from canon.flow.adaptive import taylor_orbit
 from canon.flow.adaptive.tested_steps import good_steps
@@ -134,6 +135,19 @@ def test_ordinary_systems_are_not_tested() -> None:
             Hamiltonian((x.momentum**2 + y.momentum**2) / 2 + V, [x, y], [x.momentum, y.momentum]), {}
         )
         assert not may_have_gaps(system.graph, system.rates, 20), V
+
+
+def test_gaps_are_where_no_coefficient_of_the_last_two_is_filled() -> None:
+    """By counting: x″ = x^d has the coefficients kD + 1 of x and kD of its rate, D = d + 1, and k of any size.
+
+    Where kD = order + 1 the gap fills in proportion to the distance from the zero, which does no harm.
+    """
+    for order in range(3, 26):
+        for degree in range(1, 32):
+            graph = Graph()
+            filled = [{k * period for k in range(40)} for period in range(2, degree + 2)]
+            gap = any(multiples.isdisjoint(range(order - 2, order + 2)) for multiples in filled)
+            assert may_have_gaps(graph, [graph.from_sympy(x**degree)], order) == gap, (order, degree)
 
 
 POWERS = (4, 6, 7, 8, 9, 10, 11, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30)

@@ -282,6 +282,15 @@ def test_refusals_say_what_is_wrong(make, words):
         make()
 
 
+def test_an_inverse_takes_no_name_of_the_map():
+    """q → p, p → −q has the inverse q = −P, p = Q; in the old names that would be the map once more."""
+    exchange = CanonicalTransformation([q], [p], [p], [-q])
+    assert inverse_transformation(exchange, [Q], [P]).images == (-P, Q)
+    for new_q, new_p in ((q, p), (p, q), (Q, p), (q, P), (p, P), (Q, q), (Q, Q)):
+        with pytest.raises(ValueError, match="different symbols, none of them an old variable"):
+            inverse_transformation(exchange, [new_q], [new_p])
+
+
 def test_maps_with_arbitrary_functions_have_their_valence_or_none():
     """{Q, P} = f′² is no constant, whatever simple points say; 2 f′/f′ is one."""
     f = sp.Function("f")
