@@ -109,16 +109,18 @@ def try_one(mutant: Mutant, record: Record) -> Trial:
 
 def tell(mutants: list[Mutant], found: dict[str, Trial], said: dict[str, dict[str, str]]) -> None:
     """Print the table by rooms, and what is known of every survivor."""
-    counts = {room: Counter[str]() for room in lines_of_rooms(HOME)}
+    rooms = {room: sum(lines.values()) for room, lines in lines_of_rooms(HOME).items()}
+    counts = {room: Counter[str]() for room in rooms}
     for mutant in mutants:
         counts[room_of(mutant.file)][fate(mutant, found, said)] += 1
     print(
-        f"{'room':12}{'lines':>8}{'mutants':>9}{'killed':>8}{'by new tests':>14}{'equal':>7}{'alive':>7}{'share':>9}"
+        f"{'room':12}{'lines':>8}{'mutants':>9}{'killed':>8}{'by new tests':>14}{'no change':>11}{'alive':>7}"
     )
-    for room, lines in lines_of_rooms(HOME).items():
-        print(row(room, sum(lines.values()), counts[room]))
+    for room, lines in rooms.items():
+        print(row(room, lines, counts[room]))
     total = sum(counts.values(), Counter[str]())
-    print(row("all", sum(sum(each.values()) for each in lines_of_rooms(HOME).values()), total))
+    print(row("all", sum(rooms.values()), total))
+    print(f"\n{total.total() - total['equal']} change what canon does, {share(total)} % of them are killed")
     for key, title in FATES.items():
         told = [m for m in mutants if fate(m, found, said) == key]
         print(f"\n{title}: {len(told)}")
@@ -138,10 +140,16 @@ def fate(mutant: Mutant, found: dict[str, Trial], said: dict[str, dict[str, str]
 
 
 def row(name: str, lines: int, count: Counter[str]) -> str:
+    """Return a line of the table."""
+    numbers = f"{count['killed'] + count['new']:8}{count['new']:14}{count['equal']:11}{count['alive']:7}"
+    return f"{name:12}{lines:8}{count.total():9}{numbers}{share(count):>8} %"
+
+
+def share(count: Counter[str]) -> str:
+    """Return how many percent of the mutants that change something are killed."""
     killed = count["killed"] + count["new"]
     change = killed + count["alive"]
-    share = f"{100 * killed / change:7.1f} %" if change else "      – "
-    return f"{name:12}{lines:8}{count.total():9}{killed:8}{count['new']:14}{count['equal']:7}{count['alive']:7}{share}"
+    return f"{100 * killed / change:.1f}" if change else "–"
 
 
 def words(known: dict[str, str]) -> str:

@@ -5,6 +5,7 @@ What a test had executed until then is on the record too, with the mark that it 
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import signal
@@ -41,7 +42,19 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 @pytest.hookimpl(wrapper=True, trylast=True)
 def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:  # noqa: ARG001, pytest goes by the names
     """Run a test for so long at most."""
+    with _limited():
+        return (yield)
 
+
+@pytest.hookimpl(wrapper=True, trylast=True)
+def pytest_runtest_setup(item: pytest.Item) -> Generator[None, Any, Any]:  # noqa: ARG001
+    """Prepare a test for so long at most."""
+    with _limited():
+        return (yield)
+
+
+@contextlib.contextmanager
+def _limited() -> Generator[None]:
     def give_up(_: int, frame: FrameType | None) -> None:
         if not _called_by_a_library(frame):
             pytest.skip(_CUT)  # hypothesis lets this through, and seeks no smaller example
@@ -51,7 +64,7 @@ def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:  # noqa
     signal.setitimer(signal.ITIMER_REAL, _SECONDS, _AGAIN)
     signal.setitimer(signal.ITIMER_PROF, _PROCESSOR_SECONDS, _AGAIN)
     try:
-        return (yield)
+        yield
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.setitimer(signal.ITIMER_PROF, 0.0)

@@ -8,6 +8,7 @@ the module that keeps it get an empty folder.
 from __future__ import annotations
 
 import contextlib
+import gc
 import importlib
 import json
 import math
@@ -34,6 +35,7 @@ __all__ = ["Trial", "copy_of_checkout", "failing", "trial", "warm_up"]
 
 _RESTS_ON = (
     "hypothesis",
+    "_hypothesis_pytestplugin",
     "sympy",
     "flint",
     "numpy",
@@ -84,6 +86,7 @@ def warm_up() -> None:
     os.environ["MPLBACKEND"] = "Agg"
     for name in _RESTS_ON:
         importlib.import_module(name)
+    gc.freeze()  # no search for garbage goes through what is shared with the forks
     if any(name.partition(".")[0] == "canon" for name in sys.modules):
         raise RuntimeError("canon was imported before its mutants")
 
@@ -171,7 +174,9 @@ def _be_the_child(
         sys.path[:] = [str(home), *(p for p in sys.path if p not in (here, str(Path(here).parent)))]
         os.environ |= {"PYTHONPATH": str(home), "XDG_CACHE_HOME": str(caches), "CI": "true"}
         files = dict.fromkeys(test.partition("::")[0] for test in tests)
-        quiet = ["-q", "-p", "no:cacheprovider", "-W", "ignore::pytest.PytestAssertRewriteWarning"]
+        os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
+        quiet = ["-q", "-p", "no:cacheprovider", "-p", "_hypothesis_pytestplugin"]
+        quiet += ["-W", "ignore::pytest.PytestAssertRewriteWarning"]
         status = int(pytest.main([*quiet, *options, *files], plugins=[_Teller(tests, told)]))
     finally:
         os._exit(status)
