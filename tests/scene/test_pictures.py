@@ -1,0 +1,49 @@
+"""Pictures of scenes: what is rigid keeps its shape wherever it moves, and what has weight hangs where it should."""
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from canon.scene import SCENES, find
+
+DRAWN = [scene for scene in SCENES if scene.picture_of is not None and scene.picture_of(scene.symbols).bars]
+STRETCHED = (
+    "fput",
+    "swinging-atwood",
+    "table-hole",
+    "pendulum-multiplier",
+    "piston-engine-joints",
+    "block-in-pipe",
+)
+"""Scenes with strings that grow longer, or with more coordinates than places."""
+
+
+def lengths(scene, seeds):
+    """Return the lengths of all bars between one joint and the next, at states drawn by seeds."""
+    given = {parameter.name: float(parameter.value) for parameter in scene.parameters}
+    bars = [[list(point) for point in bar[:8]] for bar in scene.picture_of(scene.symbols).bars]
+    used = {s for bar in bars for point in bar for c in point for s in sp.sympify(c).free_symbols}
+    symbols = sorted(used, key=str)
+    placed = sp.lambdify(symbols, bars, "math")
+    for seed in seeds:
+        draw = np.random.default_rng(seed)
+        joints = placed(*(given.get(s.name, draw.uniform(0.1, 1.0)) for s in symbols))
+        yield np.concatenate([np.linalg.norm(np.diff(bar, axis=0), axis=1) for bar in joints])
+
+
+@pytest.mark.parametrize("scene", DRAWN, ids=lambda scene: scene.name)
+def test_bars_keep_their_lengths(scene):
+    """In three states each bar is as long, unless it is a string that stretches."""
+    first, *others = lengths(scene, range(3))
+    alike = [np.allclose(other, first, rtol=1e-9, atol=1e-12) for other in others]
+    assert alike == [scene.name not in STRETCHED] * 2
+
+
+@pytest.mark.parametrize(("name", "times"), [("lagrange-top", 2), ("kovalevskaya-top", 1)])
+def test_a_weight_is_drawn_as_high_as_its_energy_says(name, times):
+    """V = m g z of the centre of mass, which lies at l from the fixed point; Lagrange's top is drawn to 2 l."""
+    scene = find(name)
+    s = scene.symbols
+    (mass,) = scene.picture_of(s).masses
+    assert sp.simplify(scene.V_of(s) - s.m * s.g * mass[-1] / times) == 0
+    assert sp.simplify(sum(c**2 for c in mass) - (times * s.l) ** 2) == 0
