@@ -190,6 +190,15 @@ def test_implicit_steps():
     assert implicit([Q - q - h * P, P - p + h * f(Q)]).is_canonical().fails
 
 
+def test_an_implicit_map_has_an_equation_for_each_variable():
+    old, new = sp.symbols("q:3 p:3", real=True), sp.symbols("Q:3 P:3", real=True)
+    still = [b - a for a, b in zip(old, new, strict=True)]
+    assert ImplicitTransformation(old[:3], old[3:], new[:3], new[3:], still).is_canonical().holds
+    for equations in (still[:5], [*still, old[0], old[1]]):
+        with pytest.raises(ValueError, match="equations for a map of 6 variables"):
+            ImplicitTransformation(old[:3], old[3:], new[:3], new[3:], equations)
+
+
 def test_new_hamiltonians_of_moving_maps():
     H = p**2 / (2 * m)
     boost = MOVING["Galilean boost"].map
