@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from canon.expression.symbols.symbol import velocity
 from canon.scene import SCENES, find
 
 DRAWN = [scene for scene in SCENES if scene.picture_of is not None and scene.picture_of(scene.symbols).bars]
@@ -47,3 +48,43 @@ def test_a_weight_is_drawn_as_high_as_its_energy_says(name, times):
     (mass,) = scene.picture_of(s).masses
     assert sp.simplify(scene.V_of(s) - s.m * s.g * mass[-1] / times) == 0
     assert sp.simplify(sum(c**2 for c in mass) - (times * s.l) ** 2) == 0
+
+
+EXTENDED = (
+    "lagrange-top",
+    "kovalevskaya-top",
+    "chaplygin-sleigh",
+    "rolling-disc",
+    "unicycle",
+    "roller",
+    "roller-second-kind",
+    "hollow-cylinder",
+    "hollow-cylinder-second-kind",
+    "inertia-wheel-pendulum",
+    "cart-pendulum",
+    "motor-shaft",
+    "rack-and-pinion",
+)
+"""Scenes whose one dot is not all that has mass."""
+
+
+def points_of_mass():
+    drawn = (scene for scene in SCENES if scene.picture_of is not None and scene.L_of is not None)
+    return [scene for scene in drawn if len(scene.picture_of(scene.symbols).masses) == 1]
+
+
+@pytest.mark.parametrize("scene", points_of_mass(), ids=lambda scene: scene.name)
+def test_a_point_of_mass_has_the_kinetic_energy_of_its_way_in_the_picture(scene):
+    """T = m ṙ²/2, by the velocities that the picture says, at a state drawn by a seed."""
+    s = scene.symbols
+    q = [getattr(s, name) for name in scene.coordinates.split()]
+    way = sp.Matrix(scene.picture_of(s).masses[0]).jacobian(q)
+    masses = sp.hessian(sp.sympify(scene.L_of(s)), [velocity(each) for each in q])
+    apart = masses - getattr(s, "m", sp.S.One) * way.T * way
+    draw = np.random.default_rng(1)
+    values = {
+        each: draw.uniform(0.1, 1.0) for each in sorted(apart.free_symbols | masses.free_symbols, key=str)
+    }
+    size = max(abs(f) for f in masses.subs(values))
+    alike = bool(max(abs(f) for f in apart.subs(values)) < 1e-9 * size)
+    assert alike == (scene.name not in EXTENDED)
