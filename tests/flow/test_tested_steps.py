@@ -8,6 +8,7 @@ import subprocess
 import sys
 from fractions import Fraction
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -69,6 +70,18 @@ def test_a_step_too_long_is_found_and_no_other() -> None:
     good, missed = good_steps(piece, made)
     assert good == 0
     assert missed > 1e6
+
+
+@pytest.mark.parametrize(("start", "is_good"), [(1000.0, True), (100.0, False), (-1000.0, True)])
+def test_what_a_step_has_missed_counts_in_parts_of_its_larger_end(start: float, is_good: bool) -> None:
+    """A step of 10 to the origin, along x = s − s t/10 + c t², whose end moves by 2 · 10 c too fast."""
+    c = 1e-13
+    made = SimpleNamespace(state=np.zeros(1), dtime=0.0, time=0.0, tol=1e-16, step=lambda **_: None)
+    made.tc = np.array([[100 * c, -start / 10, 0.0]])
+    piece = SimpleNamespace(tcs=np.array([[[start, -start / 10, c]]]), times=np.array([0.0, 10.0]))
+    good, missed = good_steps(piece, made)
+    assert good == is_good
+    assert missed == (0.0 if is_good else pytest.approx(10 * 20 * c / (1e-16 * abs(start)), rel=1e-2))
 
 
 def test_late_times_do_not_look_like_steps_too_long() -> None:
