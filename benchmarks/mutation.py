@@ -22,10 +22,10 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from mutants.choice_of_tests import quickest, tests_for
+from mutants.choice_of_tests import quickest, tests_for, tests_once_more
 from mutants.record_of_tests import Record, places_of_tests, read_record, record_place
 from mutants.sampling import Mutant, drawn, lines_of_rooms, room_of
-from mutants.trial import Trial, copy_of_checkout, failing, trial, warm_up
+from mutants.trial import ONCE_MORE, Trial, copy_of_checkout, failing, trial, warm_up
 
 HOME = Path(__file__).parents[1]
 KEPT = HOME / "out" / "mutation"
@@ -49,9 +49,9 @@ def main(arguments: list[str]) -> None:
         copy_of_checkout(HOME, COPY)
         for place, tests in places_of_tests(COPY).items():
             record_place(COPY, place, tests, RECORD)
-        try_all(left, read_record(RECORD), results)
+        try_all(mutants, left, read_record(RECORD), results, again=said.again)
         found = read_results(results)
-    tell(mutants, found, explanations())
+    tell([mutant for mutant in mutants if mutant.key in found], found, explanations())
 
 
 def kept_or_drawn(count: int, seed: int) -> list[Mutant]:
@@ -75,36 +75,44 @@ def explanations() -> dict[str, dict[str, str]]:
     return {each["mutant"]: each for each in tomllib.loads(SURVIVORS.read_text("utf-8"))["survivor"]}
 
 
-def try_all(mutants: list[Mutant], record: Record, results: Path) -> None:
-    """Try mutants and write what came of each; those that a test killed which always fails are tried anew."""
+def try_all(mutants: list[Mutant], left: list[Mutant], record: Record, results: Path, *, again: bool) -> None:
+    """Try what is left of the mutants and write what came of each; then those anew whose killers always fail."""
     warm_up()
     CACHES.mkdir(exist_ok=True)
-    left = mutants
     while left:
         for k, mutant in enumerate(left):
-            found = try_one(mutant, record)
+            found = try_once_more(mutant, record) if again else try_one(mutant, record)
             with results.open("a", encoding="utf-8") as out:
                 out.write(json.dumps([mutant.key, asdict(found)], ensure_ascii=False) + "\n")
-            print(
-                f"{k + 1}/{len(left)} {found.outcome:9}{found.seconds:6.1f} s  {mutant.key}", file=sys.stderr
-            )
-        killers = read_results(results)
-        tests = {killers[m.key].by: 1.0 for m in left if "::" in killers[m.key].by}
-        always = failing(tests, COPY, CACHES, LOG) if tests else set[str]()
+            told = f"{k + 1}/{len(left)} {found.outcome:9}{found.seconds:6.1f} s  {mutant.key}"
+            print(told, file=sys.stderr, flush=True)
+        known = read_results(results)
+        killers = {mutant.key: known[mutant.key].by for mutant in mutants if mutant.key in known}
+        always = failing({test: 30.0 for test in killers.values() if "::" in test}, COPY, CACHES, LOG)
         record.unfit |= always
-        left = [mutant for mutant in left if killers[mutant.key].by in always]
+        left = [mutant for mutant in mutants if killers.get(mutant.key) in always]
 
 
 def try_one(mutant: Mutant, record: Record) -> Trial:
     """Try a mutant: by a few tests, whose modules are soon imported, then by the others."""
-    known = explanations().get(mutant.key, {})
-    tests = tests_for(mutant, record, COPY, [known["test"]] if "test" in known else [])
+    tests = tests_for(mutant, record, COPY, written_for(mutant))
     found = Trial("survived", "", "no test", 0, 0.0)
     for part in (first := quickest(tests)), {t: s for t, s in tests.items() if t not in first}:
         if part and found.outcome == "survived":
             after = trial(mutant, part, COPY, CACHES, LOG)
             found = replace(after, tests=found.tests + after.tests, seconds=found.seconds + after.seconds)
     return found
+
+
+def try_once_more(mutant: Mutant, record: Record) -> Trial:
+    """Try a survivor by the test that was written for it, or by many more tests."""
+    tests = dict.fromkeys(written_for(mutant), 5.0) or tests_once_more(mutant, record, COPY)
+    return trial(mutant, tests, COPY, CACHES, LOG, ONCE_MORE)
+
+
+def written_for(mutant: Mutant) -> list[str]:
+    known = explanations().get(mutant.key, {})
+    return [known["test"]] if "test" in known else []
 
 
 def tell(mutants: list[Mutant], found: dict[str, Trial], said: dict[str, dict[str, str]]) -> None:

@@ -14,16 +14,15 @@ if TYPE_CHECKING:
 
     from mutants.record_of_tests import Record
 
-__all__ = ["quickest", "tests_for"]
+__all__ = ["quickest", "tests_for", "tests_once_more"]
 
-_OF_THE_LINE = 15.0
-_OF_THE_FILE = 5.0
-_OF_THE_ROOM = 8.0
-_LONG_TESTS = 2
-_SECONDS_OF_LONG_ONES = 5.0
+_OF_THE_LINE, _OF_THE_FILE, _OF_THE_ROOM = 8.0, 2.0, 8.0
+"""Seconds of tests that execute the line, others that execute something of the module, and others of the room."""
+_LONG_TEST = 5.0
 _FIRST, _FILES = 3.0, 3
 _ALIKE = 3
 """So many parameters of one test are tried before other tests are; the rest of them follow."""
+_FULL_TIME = 10.0
 
 
 def tests_for(mutant: Mutant, record: Record, home: Path, first: Iterable[str]) -> dict[str, float]:
@@ -40,24 +39,31 @@ def tests_for(mutant: Mutant, record: Record, home: Path, first: Iterable[str]) 
     first
         Tests that are known to fail, whether they are on the record or not.
     """
-    found = dict.fromkeys(first, 3.0)
-    here = f"tests/{room_of(mutant.file)}/", mutant.file
-    of_lines: dict[str, None] = {}
-    for line in _lines(home / mutant.file, mutant.line):
-        of_lines |= dict.fromkeys(record.of_line(mutant.file, line))
-    quick = [test for test in of_lines if test not in record.long]
-    own, others = _parted(quick, here)
+    found = dict.fromkeys(first, _LONG_TEST)
+    of_line = _of_line(mutant, record, home)
+    own, others = _parted([test for test in of_line if test not in record.long], mutant)
     _take(own, 0.6 * _OF_THE_LINE, record, found)
     _take(others, 0.4 * _OF_THE_LINE, record, found)
-    of_file = [test for test in record.of_file(mutant.file) if test not in record.long]
-    own, others = _parted(of_file, here)
+    own, others = _parted([t for t in record.of_file(mutant.file) if t not in record.long], mutant)
     _take([*own, *others], _OF_THE_FILE, record, found)
     if len(found) < _ALIKE:
         room = [test for test in record.of_room(room_of(mutant.file)) if test not in record.long]
         _take(room, _OF_THE_ROOM, record, found)
-    long = [test for test in of_lines if test in record.long]
-    own, others = _parted(long, here)
-    return found | dict.fromkeys([*own, *others][:_LONG_TESTS], _SECONDS_OF_LONG_ONES)
+    own, others = _parted([test for test in of_line if test in record.long], mutant)
+    return found | dict.fromkeys([*own, *others][:1], _LONG_TEST)
+
+
+def tests_once_more(mutant: Mutant, record: Record, home: Path) -> dict[str, float]:
+    """Return the tests for a survivor: with all their parameters, those that take long, and whole files of tests.
+
+    A name without parameters stands for all of them, one of a file for all of its tests. The files are those that name
+    something that the module offers, in the mutant's room and among the examples in docstrings.
+    """
+    own, others = _parted(_of_line(mutant, record, home), mutant)
+    found = dict.fromkeys((test.partition("[")[0] for test in own), _FULL_TIME)
+    found |= dict.fromkeys(_files_that_name(mutant, home), _FULL_TIME)
+    found |= dict.fromkeys((test.partition("[")[0] for test in others), _FULL_TIME)
+    return found | dict.fromkeys((test.partition("[")[0] for test in record.of_file(mutant.file)), _FULL_TIME)
 
 
 def quickest(tests: dict[str, float]) -> dict[str, float]:
@@ -72,7 +78,32 @@ def quickest(tests: dict[str, float]) -> dict[str, float]:
     return found
 
 
-def _parted(tests: list[str], here: tuple[str, ...]) -> tuple[list[str], list[str]]:
+def _files_that_name(mutant: Mutant, home: Path) -> list[str]:
+    """Return the files of tests that import something from the module, or name it, the most of it first."""
+    tree = ast.parse((home / mutant.file).read_text(encoding="utf-8"))
+    names = [n.name for n in tree.body if isinstance(n, ast.FunctionDef | ast.ClassDef) and n.name[0] != "_"]
+    module = mutant.file.removesuffix(".py").replace("/", ".")
+    room = room_of(mutant.file)
+    folder = home / "tests" / room
+    paths = folder.rglob("test_*.py") if folder.exists() else (home / "tests").glob("test_*.py")
+    found = list[tuple[int, str]]()
+    for path in sorted(paths):
+        text = path.read_text(encoding="utf-8")
+        count = 5 * text.count(module) + sum(f"{name}(" in text for name in names)
+        found += [(-count, path.relative_to(home).as_posix())] if count else []
+    return [mutant.file, *(path for _, path in sorted(found))]
+
+
+def _of_line(mutant: Mutant, record: Record, home: Path) -> list[str]:
+    found: dict[str, None] = {}
+    for line in _lines(home / mutant.file, mutant.line):
+        found |= dict.fromkeys(record.of_line(mutant.file, line))
+    return [*found]
+
+
+def _parted(tests: list[str], mutant: Mutant) -> tuple[list[str], list[str]]:
+    """Part tests into those of the mutant's room and module, and others."""
+    here = f"tests/{room_of(mutant.file)}/", mutant.file
     own = [test for test in tests if test.startswith(here)]
     return own, [test for test in tests if not test.startswith(here)]
 

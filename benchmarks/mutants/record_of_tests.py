@@ -12,6 +12,7 @@ import os
 import subprocess
 import sys
 from collections import defaultdict
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Record", "places_of_tests", "read_record", "record_place"]
 
+_PATIENCE = 3600.0
+"""Seconds for the tests of a place; those of one that has not ended then are told by their names alone."""
 _ABOUT_THE_TEXT = ("tests/test_architecture", "tests/test_where_things_are", "tests/test_project_files")
 """Tests that read canon's sources as text: a mutant that they notice has not been noticed by what it does."""
 
@@ -80,8 +83,16 @@ def record_place(home: Path, place: str, tests: list[str], into: Path) -> None:
         f"-q -p no:cacheprovider -p mutants.recording --cov=canon --cov-config={config} --cov-context=test"
     )
     command = [sys.executable, "-m", "pytest", *options.split(), "--cov-report=", *tests]
-    with (into / f"{place}.log").open("w", encoding="utf-8") as log:
-        subprocess.run(command, cwd=home, env={**os.environ, **known}, stdout=log, stderr=log, check=False)
+    with (into / f"{place}.log").open("w", encoding="utf-8") as log, suppress(subprocess.TimeoutExpired):
+        subprocess.run(
+            command,
+            cwd=home,
+            env={**os.environ, **known},
+            stdout=log,
+            stderr=log,
+            check=False,
+            timeout=_PATIENCE,
+        )
 
 
 def read_record(into: Path) -> Record:

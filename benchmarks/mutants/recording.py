@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Generator
     from types import FrameType
 
-_SECONDS = 1.5
-_PROCESSOR_SECONDS = 0.4
+_SECONDS = 20.0
+_PROCESSOR_SECONDS = 3.0
 _AGAIN = 0.1
 _CALLED_BACK = "cycle_quadrature.py"
 """The module whose functions FLINT's integration calls."""

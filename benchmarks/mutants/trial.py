@@ -31,7 +31,7 @@ from mutants.sampling import Mutant, mutated_source
 if TYPE_CHECKING:
     from collections.abc import Generator
 
-__all__ = ["Trial", "copy_of_checkout", "failing", "trial", "warm_up"]
+__all__ = ["ONCE_MORE", "Trial", "copy_of_checkout", "failing", "trial", "warm_up"]
 
 _RESTS_ON = (
     "hypothesis",
@@ -49,8 +49,8 @@ _RESTS_ON = (
     "matplotlib",
     "matplotlib.backends.backend_agg",
 )
-_PROCESSOR_SECONDS = 40.0
-"""No mutant has more; without a failure until then it has survived."""
+PROCESSOR_SECONDS, ONCE_MORE = 40.0, 60.0
+"""No mutant has more, at first and once more; without a failure until then it has survived."""
 _START = 15.0
 """Processor time of a test beside ten times what it took on the record: for imports and for code not yet compiled."""
 _IDLE = 60.0
@@ -91,7 +91,14 @@ def warm_up() -> None:
         raise RuntimeError("canon was imported before its mutants")
 
 
-def trial(mutant: Mutant, tests: dict[str, float], home: Path, caches: Path, log: Path) -> Trial:
+def trial(
+    mutant: Mutant,
+    tests: dict[str, float],
+    home: Path,
+    caches: Path,
+    log: Path,
+    processor_seconds: float = PROCESSOR_SECONDS,
+) -> Trial:
     """Run tests on a mutant until one fails.
 
     Parameters
@@ -106,16 +113,20 @@ def trial(mutant: Mutant, tests: dict[str, float], home: Path, caches: Path, log
         Where machine code is kept.
     log
         Where pytest's words go.
+    processor_seconds
+        How much all of them together may use.
     """
     with _changed(mutant, home), tempfile.TemporaryDirectory() as empty:
         kept = Path(empty) if mutant.file.endswith("kept_code.py") else caches
-        events, status, late, used = _run(tests, home, kept, log, ["-x"])
+        events, status, late, used = _run(tests, home, kept, log, ["-x"], processor_seconds)
     return _judged(events, status, late, used)
 
 
 def failing(tests: dict[str, float], home: Path, caches: Path, log: Path) -> set[str]:
     """Return those of some tests that fail on canon as it is, and those that were not reached."""
-    events, *_ = _run(tests, home, caches, log, [], processor_seconds=math.inf)
+    if not tests:
+        return set()
+    events, *_ = _run(tests, home, caches, log, [], math.inf)
     begun = {test for what, test, _ in events if what == "start"}
     return {test for what, test, _ in events if what == "failed"} | (set(tests) - begun)
 
@@ -144,7 +155,7 @@ def _run(
     caches: Path,
     log: Path,
     options: list[str],
-    processor_seconds: float = _PROCESSOR_SECONDS,
+    processor_seconds: float,
 ) -> tuple[list[list[str]], int, str, float]:
     """Return what a fork told of the tests, how it ended, what was late, and the processor time."""
     with tempfile.TemporaryDirectory() as folder:
@@ -191,7 +202,13 @@ class _Teller:
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        items[:] = sorted((i for i in items if i.nodeid in self.order), key=lambda i: self.order[i.nodeid])
+        places = {item: self.place(item.nodeid) for item in items}
+        items[:] = sorted((item for item in items if places[item] >= 0), key=places.__getitem__)
+
+    def place(self, test: str) -> int:
+        """Return where a test stands in the order, by its own name, its function's or its file's; -1 for nowhere."""
+        names = test, test.partition("[")[0], test.partition("::")[0]
+        return min((self.order[name] for name in names if name in self.order), default=-1)
 
     def pytest_runtest_logstart(self, nodeid: str) -> None:
         self.tell("start", nodeid, "")
@@ -221,7 +238,7 @@ def _watched(
         if len(events) > seen:
             seen, began_at, began_with = len(events), time.monotonic(), used
         test = json.loads(events[-1])[1] if events else ""
-        allowed = _START + 10 * tests.get(test, 1.0)
+        allowed = _START + 10 * tests.get(test, 1.5)
         if used > processor_seconds:
             late = _BUDGET
         elif used - began_with > allowed or time.monotonic() - began_at > _IDLE + 2 * allowed:
