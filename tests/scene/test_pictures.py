@@ -88,3 +88,27 @@ def test_a_point_of_mass_has_the_kinetic_energy_of_its_way_in_the_picture(scene)
     size = max(abs(f) for f in masses.subs(values))
     alike = bool(max(abs(f) for f in apart.subs(values)) < 1e-9 * size)
     assert alike == (scene.name not in EXTENDED)
+
+
+SPRINGS = {"toda": 3, "toda-6": 6, "block-in-pipe": 1, "driven-oscillator": 1, "damped-oscillator": 1}
+SPRINGS |= {f"{name}-oscillator": 1 for name in ("harmonic", "isotropic", "duffing")}
+SPRINGS |= {"sliding-mass-pendulum": 1, "spring-pendulum": 1}
+
+
+@pytest.mark.parametrize(
+    "scene", [scene for scene in SCENES if scene.picture_of is not None], ids=lambda scene: scene.name
+)
+def test_springs_hold_masses_and_the_ground_rests(scene):
+    """Each end of a spring is a mass or at rest, no two springs are the same, and no ground moves."""
+    s = scene.symbols
+    picture = scene.picture_of(s)
+    q = {getattr(s, name) for name in scene.coordinates.split()}
+
+    def rests(point):
+        return not any(sp.sympify(c).free_symbols & q for c in point)
+
+    assert len(set(picture.springs)) == SPRINGS.get(scene.name, 0)
+    for one, other in picture.springs:
+        assert one != other
+        assert all(rests(end) or end in picture.masses for end in (one, other))
+    assert all(rests(point) for line in picture.ground for point in line)
