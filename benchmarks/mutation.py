@@ -1,5 +1,6 @@
 """Print how many mutants of canon its tests kill: small changes of the code, one at a time.
 
+pip install cosmic-ray pytest-cov
 python benchmarks/mutation.py --count 500 --seed 1           # what is not done yet, then the table
 python benchmarks/mutation.py --count 500 --seed 1 --again   # survivors once more, by the tests that are there now
 

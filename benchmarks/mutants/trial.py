@@ -54,6 +54,8 @@ PROCESSOR_SECONDS, ONCE_MORE = 40.0, 60.0
 _START = 15.0
 """Processor time of a test beside ten times what it took on the record: for imports and for code not yet compiled."""
 _IDLE = 60.0
+_LOOKS = 1.0
+"""Seconds between looks at the processes, which cost a few milliseconds."""
 _BUDGET = "its time was over"
 _MEMORY = 10 * 2**30
 _TICKS = os.sysconf("SC_CLK_TCK")
@@ -230,20 +232,23 @@ def _watched(
     """Wait for the child, and end it where a test or all of them take too long."""
     used, seen, late, status = 0.0, 0, "", 0
     began_at, began_with = time.monotonic(), 0.0
-    ended = 0
+    ended, looked = 0, began_at
     while not ended and not late:
-        time.sleep(0.1)
-        used = max(used, _processor_seconds(child))
+        time.sleep(0.05)
+        ended, status, usage = os.wait4(child, os.WNOHANG)
+        used = max(used, usage.ru_utime + usage.ru_stime)
+        if ended or time.monotonic() - looked < _LOOKS:
+            continue
+        used, looked = max(used, _processor_seconds(child)), time.monotonic()
         events = told.read_text(encoding="utf-8").splitlines()
         if len(events) > seen:
-            seen, began_at, began_with = len(events), time.monotonic(), used
+            seen, began_at, began_with = len(events), looked, used
         test = json.loads(events[-1])[1] if events else ""
         allowed = _START + 10 * tests.get(test, 1.5)
         if used > processor_seconds:
             late = _BUDGET
-        elif used - began_with > allowed or time.monotonic() - began_at > _IDLE + 2 * allowed:
+        elif used - began_with > allowed or looked - began_at > _IDLE + 2 * allowed:
             late = test or "import"
-        ended, status = os.waitpid(child, os.WNOHANG)
     with contextlib.suppress(ProcessLookupError):
         os.killpg(child, signal.SIGKILL)
     if not ended:
