@@ -1,5 +1,7 @@
 """Pictures of scenes: what is rigid keeps its shape wherever it moves, and what has weight hangs where it should."""
 
+import itertools
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -99,7 +101,7 @@ SPRINGS |= {"sliding-mass-pendulum": 1, "spring-pendulum": 1}
     "scene", [scene for scene in SCENES if scene.picture_of is not None], ids=lambda scene: scene.name
 )
 def test_springs_hold_masses_and_the_ground_rests(scene):
-    """Each end of a spring is a mass or at rest, no two springs are the same, and no ground moves."""
+    """Each end of a spring is a mass or at rest, no ground moves, and lines go on from one point to another."""
     s = scene.symbols
     picture = scene.picture_of(s)
     q = {getattr(s, name) for name in scene.coordinates.split()}
@@ -112,3 +114,5 @@ def test_springs_hold_masses_and_the_ground_rests(scene):
         assert one != other
         assert all(rests(end) or end in picture.masses for end in (one, other))
     assert all(rests(point) for line in picture.ground for point in line)
+    lines = (*picture.ground, *picture.bars)
+    assert all(one != other for line in lines for one, other in itertools.pairwise(line))
