@@ -25,7 +25,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 from mutants.choice_of_tests import quickest, tests_for, tests_once_more
 from mutants.record_of_tests import Record, places_of_tests, read_record, record_place
-from mutants.sampling import Mutant, drawn, lines_of_rooms, room_of
+from mutants.sampling import Mutant, drawn, is_there, lines_of_rooms, room_of
 from mutants.trial import ONCE_MORE, Trial, copy_of_checkout, failing, trial, warm_up
 
 HOME = Path(__file__).parents[1]
@@ -46,6 +46,12 @@ def main(arguments: list[str]) -> None:
     mutants = kept_or_drawn(said.count, said.seed)
     found = read_results(results)
     left = [m for m in mutants if m.key not in found or (said.again and found[m.key].outcome == "survived")]
+    gone = [mutant for mutant in left if not is_there(HOME, mutant)]
+    if gone:
+        print(
+            f"{len(gone)} mutants are of lines that have changed; delete {KEPT} to draw anew", file=sys.stderr
+        )
+        left = [mutant for mutant in left if mutant not in gone]
     if left:
         copy_of_checkout(HOME, COPY)
         for place, tests in places_of_tests(COPY).items():

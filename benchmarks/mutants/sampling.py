@@ -18,7 +18,7 @@ from mutants.operators import operators
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["Mutant", "drawn", "lines_of_rooms", "mutated_source", "room_of"]
+__all__ = ["Mutant", "drawn", "is_there", "lines_of_rooms", "mutated_source", "room_of"]
 
 _LEAST = 4
 """So many mutants has every room at least."""
@@ -76,18 +76,48 @@ def lines_of_rooms(home: Path) -> dict[str, dict[str, int]]:
     return dict(sorted(found.items()))
 
 
-def mutated_source(home: Path, mutant: Mutant) -> str:
-    """Return the whole source of a mutant's module.
+def is_there(home: Path, mutant: Mutant) -> bool:
+    """Tell whether the line that a mutant changes still stands in its module."""
+    path = home / mutant.file
+    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+    return any(line.strip() == mutant.before for line in lines)
 
-    Raises
-    ------
-    ValueError
-        Where the module has changed since the mutant was drawn.
+
+def mutated_source(home: Path, mutant: Mutant) -> str | None:
+    """Return the whole source of a mutant's module; None where what it changes is no longer there.
+
+    Lines above it may have come or gone since it was drawn.
     """
-    source = (home / mutant.file).read_text(encoding="utf-8")
-    if source.splitlines()[mutant.line - 1].strip() != mutant.before:
-        raise ValueError(f"{mutant.file} has changed since its mutants were drawn")
-    return str(mutate_code(source, operators()[mutant.operator], mutant.occurrence))
+    path = home / mutant.file
+    source = path.read_text(encoding="utf-8")
+    lines = source.splitlines()
+    found = _changed(source, mutant, mutant.line, mutant.occurrence)
+    if found is not None:
+        return found
+    same = {k + 1 for k, line in enumerate(lines) if line.strip() == mutant.before}
+    for (line, _), ways in _places(path).items():
+        for operator, occurrence in ways if line in same else ():
+            found = _changed(source, mutant, line, occurrence) if operator == mutant.operator else None
+            if found is not None:
+                return found
+    return None
+
+
+def _changed(source: str, mutant: Mutant, line: int, occurrence: int) -> str | None:
+    """Return a changed module, where that is the mutant's change."""
+    lines = source.splitlines()
+    if line > len(lines) or lines[line - 1].strip() != mutant.before:
+        return None
+    whole = mutate_code(source, operators()[mutant.operator], occurrence)
+    if whole is None or _after(lines, whole, line, mutant.operator, mutant.column) != mutant.after:
+        return None
+    return str(whole)
+
+
+def _after(lines: list[str], whole: str, line: int, operator: str, column: int) -> str:
+    """Return a line after its change, or what was done where the module has more lines or fewer since."""
+    new = whole.splitlines()
+    return new[line - 1].strip() if len(lines) == len(new) else f"{operator} at column {column}"
 
 
 def drawn(home: Path, count: int, seed: int) -> list[Mutant]:
@@ -132,10 +162,9 @@ def _mutant(home: Path, file: str, place: _Place, operator: str, occurrence: int
         compile(whole, file, "exec", dont_inherit=True)
     except SyntaxError:
         return None
-    old, new = source.splitlines(), whole.splitlines()
-    line, column = place
-    after = new[line - 1].strip() if len(old) == len(new) else f"{operator} at column {column}"
-    return Mutant(file, line, column, operator, occurrence, old[line - 1].strip(), after)
+    lines, (line, column) = source.splitlines(), place
+    after = _after(lines, whole, line, operator, column)
+    return Mutant(file, line, column, operator, occurrence, lines[line - 1].strip(), after)
 
 
 @cache

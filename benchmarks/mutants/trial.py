@@ -138,8 +138,11 @@ def _changed(mutant: Mutant, home: Path) -> Generator[None]:
     """Keep a mutant in its file; the compiled module is deleted before and after, its time stamp may be the same."""
     path = home / mutant.file
     before = path.read_bytes()
+    whole = mutated_source(home, mutant)
+    if whole is None:
+        raise ValueError(f"{mutant.file} has changed since its mutants were drawn")
     try:
-        _put(path, mutated_source(home, mutant).encode())
+        _put(path, whole.encode())
         yield
     finally:
         _put(path, before)
