@@ -227,5 +227,6 @@ def test_numbers_of_64_bits_are_kept_as_sums_of_two_doubles_or_not_at_all():
     writer = _Writer()
     (high, low) = (writer.arrays[each["array"]] for each in writer.of(np.array([fine]))["sum"])
     assert np.longdouble(high[0]) + np.longdouble(low[0]) == fine
-    with pytest.raises(ValueError, match="beyond the range of doubles"):
-        writer.of(np.array([np.longdouble(10) ** -400]))
+    for power in (-400, 400):
+        with pytest.raises(ValueError, match="beyond the range of doubles"):
+            writer.of(np.array([np.longdouble(10) ** power]))
