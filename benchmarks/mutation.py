@@ -95,7 +95,7 @@ def try_all(mutants: list[Mutant], left: list[Mutant], record: Record, results: 
             print(told, file=sys.stderr, flush=True)
         known = read_results(results)
         killers = {mutant.key: known[mutant.key].by for mutant in mutants if mutant.key in known}
-        always = failing({test: 30.0 for test in killers.values() if "::" in test}, COPY, CACHES, LOG)
+        always = failing({test: 30.0 for test in killers.values() if ".py" in test}, COPY, CACHES, LOG)
         record.unfit |= always
         left = [mutant for mutant in mutants if killers.get(mutant.key) in always]
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import ast
 from collections import Counter
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mutants.sampling import Mutant, room_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from pathlib import Path
 
     from mutants.record_of_tests import Record
 
@@ -79,7 +79,10 @@ def quickest(tests: dict[str, float]) -> dict[str, float]:
 
 
 def _files_that_name(mutant: Mutant, home: Path) -> list[str]:
-    """Return the files of tests that import something from the module, or name it, the most of it first."""
+    """Return the files of tests that import something from the module, or name it, the most of it first.
+
+    Where the module's folder inside its room has a folder of tests too, these follow.
+    """
     tree = ast.parse((home / mutant.file).read_text(encoding="utf-8"))
     names = [n.name for n in tree.body if isinstance(n, ast.FunctionDef | ast.ClassDef) and n.name[0] != "_"]
     module = mutant.file.removesuffix(".py").replace("/", ".")
@@ -91,7 +94,12 @@ def _files_that_name(mutant: Mutant, home: Path) -> list[str]:
         text = path.read_text(encoding="utf-8")
         count = 5 * text.count(module) + sum(f"{name}(" in text for name in names)
         found += [(-count, path.relative_to(home).as_posix())] if count else []
-    return [mutant.file, *(path for _, path in sorted(found))]
+    inner = home / "tests" / Path(mutant.file).parent.relative_to("canon")
+    while room in inner.parent.parts and not inner.exists():
+        inner = inner.parent
+    beside = inner.rglob("test_*.py") if inner.exists() and inner != folder else ()
+    near = (path.relative_to(home).as_posix() for path in sorted(beside))
+    return [*dict.fromkeys([mutant.file, *(path for _, path in sorted(found)), *near])]
 
 
 def _of_line(mutant: Mutant, record: Record, home: Path) -> list[str]:

@@ -130,7 +130,7 @@ def failing(tests: dict[str, float], home: Path, caches: Path, log: Path) -> set
         return set()
     events, *_ = _run(tests, home, caches, log, [], math.inf)
     begun = {test for what, test, _ in events if what == "start"}
-    return {test for what, test, _ in events if what == "failed"} | (set(tests) - begun)
+    return {test for what, test, _ in events if what == "failed"} | {t for t in tests if "::" in t} - begun
 
 
 @contextlib.contextmanager
@@ -217,6 +217,11 @@ class _Teller:
 
     def pytest_runtest_logstart(self, nodeid: str) -> None:
         self.tell("start", nodeid, "")
+
+    def pytest_collectreport(self, report: pytest.CollectReport) -> None:
+        if report.failed:
+            said = str(report.longrepr).strip().splitlines()
+            self.tell("failed", report.nodeid, said[-1][:160] if said else "")
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         if report.failed:
