@@ -396,6 +396,27 @@ SECTIONS = {
         "Every attack of these ended in one of the ways that are meant, where the last column is 0.",
         (Table(("attack", "how many", "bad"), r"^(\S.*?): (\d+): .*; (\d+) bad"),),
     ),
+    "mutation": Section(
+        "Of {0} small changes of the code, drawn by a seed, {1} change what canon does, and its tests notice {2} % of "
+        "those. Each of the others was read; why it changes nothing, or which test was written for it, stands in the "
+        "output.",
+        (
+            Table(
+                (
+                    "room",
+                    "lines",
+                    "mutants",
+                    "killed",
+                    "by new tests",
+                    "change nothing",
+                    "alive",
+                    "killed, %",
+                ),
+                r"^(\w[\w ]*?) +(\d+) +(\d+) +(\d+) +(\d+) +(\d+) +(\d+) +([\d.]+|–) %$",
+            ),
+        ),
+        told=r"^all +\d+ +(\d+) .*?^(\d+) change what canon does, ([\d.]+) %",
+    ),
     "choose": Section(
         "The accuracy was kept in {0} cases, and the cost was within a factor of 2 of what was "
         "foretold in {1}.",

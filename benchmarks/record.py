@@ -43,10 +43,16 @@ BENCHMARKS = {
     "scale_out": "Studies on two processes",
     "drift_calibration": "The drift statistics on series of known growth",
     "robustness": "Attacks, counted",
+    "mutation": "Mutants of canon that its tests kill",
     "chaos": "What deviations cost, a map of MEGNO, and verdicts on orbits that are known",
     "choose": "What `choose` foretells, beside what came of it",
 }
-ARGUMENTS = {"kernels": ["--large"], "normal_forms": ["--large"], "drift_calibration": ["200"]}
+ARGUMENTS = {
+    "kernels": ["--large"],
+    "normal_forms": ["--large"],
+    "drift_calibration": ["200"],
+    "mutation": ["--count", "520", "--seed", "1"],
+}
 HEAD = """\
 # What was measured
 

@@ -148,9 +148,11 @@ class _Writer:
             self.arrays[name] = value.astype(value.dtype.newbyteorder("<"))
             return {"array": name}
         if value.dtype == np.longdouble:
-            high = value.astype(np.float64)
-            low = (value - high).astype(np.float64)
-            if not np.array_equal(high.astype(np.longdouble) + low, value):
+            with np.errstate(over="ignore", invalid="ignore"):
+                high = value.astype(np.float64)
+                low = (value - high).astype(np.float64)
+                together = high.astype(np.longdouble) + low
+            if not np.array_equal(together, value):
                 raise ValueError("numbers of 64 bits beyond the range of doubles can't be kept in a file")
             return {"sum": [self._array(high), self._array(low)]}
         numbers = value.tolist()

@@ -256,6 +256,14 @@ def test_a_projection_costs_little_more_than_one_repetition_where_steps_are_smal
     assert motion.evaluations < 1.5 * motion.steps * motion.method.stages
 
 
+@pytest.mark.parametrize("order", [2, 4, 6, 8])
+def test_half_steps_that_meet_are_one_stage(order: int) -> None:
+    """A half, B, A half: of n such steps side by side, 2n + 1 stages are left; with the turn of the copies 3n."""
+    leapfrogs = len(weights_of_order(order))
+    assert SemiexplicitSplitting(order).stages == 3 * leapfrogs - (leapfrogs - 1)
+    assert ExtendedPhaseSpace(order, omega=1).stages == 3 * leapfrogs
+
+
 def test_the_way_back_begins_with_both_copies():
     """From their mean alone it missed the start by what the copies are apart."""
     for method in (ExtendedPhaseSpace(4, omega=20), SemiexplicitSplitting(4)):

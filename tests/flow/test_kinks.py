@@ -22,6 +22,8 @@ from canon import (
     time,
 )  # fmt: skip
 from canon.flow import NonFiniteStateError, sampled_function
+from canon.flow.checked_request import hamilton_equations_of
+from canon.flow.kinked.regimes import kinks_of
 
 x, y = coordinates("x y")
 px, py = x.momentum, y.momentum
@@ -157,6 +159,17 @@ def test_nested_kinks():
         assert abs(motion.energy_error).max() < 5e-15
         back = propagate(H, (40, 0), motion.y[:, -1])
         assert abs(back.y[:, -1] - start).max() < 1e-11
+
+
+@pytest.mark.parametrize(("side", "seen"), [(-1, {"x"}), (1, {"x", "y"})])
+def test_what_stands_beside_a_zero_is_not_watched(side, seen):
+    """Max(x, 0)² |y| has no kink at y = 0 while x is negative."""
+    ridge = Hamiltonian((px**2 + py**2) / 2 + sp.Max(x, 0) ** 2 * sp.Abs(y), [x, y], [px, py])
+    kinks = kinks_of(hamilton_equations_of(ridge, {}))
+    watched = [str(kinks.system.graph.to_sympy(g)) for g in kinks.functions]
+    for above in (1, -1):
+        signs = tuple({"x": side, "y": above}[name] for name in watched)
+        assert {watched[k] for k in kinks.mattering(signs)} == seen
 
 
 def test_vector_field_with_a_sign():

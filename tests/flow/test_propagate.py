@@ -57,6 +57,7 @@ def test_shapes_and_times(method):
     assert motion.steps > 0
     assert motion.evaluations >= motion.steps
     assert str(method) in repr(motion)
+    assert f"t = {motion.t[0]:g} … {motion.t[-1]:g}, " in repr(motion)
 
 
 @pytest.mark.parametrize("method", [Splitting("kahan-li-8"), Taylor(), DOP853()], ids=str)

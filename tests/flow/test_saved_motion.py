@@ -23,6 +23,7 @@ from canon import (
 )
 from canon.flow import record_file
 from canon.flow.propagation import Interrupted
+from canon.flow.record_data import _Writer
 from canon.flow.record_file import record_in
 from canon.flow.run.event import Event
 
@@ -219,3 +220,13 @@ def test_a_file_is_replaced_as_a_whole(tmp_path):
         propagate(PENDULUM, (0, end), [1.0, 0.0], samples=2, **VERLET).save(path)
     assert load_motion(path).t[-1] == 8
     assert [each.name for each in tmp_path.iterdir()] == ["motion.npz"]
+
+
+def test_numbers_of_64_bits_are_kept_as_sums_of_two_doubles_or_not_at_all():
+    fine = 1 + np.longdouble(2) ** -60
+    writer = _Writer()
+    (high, low) = (writer.arrays[each["array"]] for each in writer.of(np.array([fine]))["sum"])
+    assert np.longdouble(high[0]) + np.longdouble(low[0]) == fine
+    for power in (-400, 400):
+        with pytest.raises(ValueError, match="beyond the range of doubles"):
+            writer.of(np.array([np.longdouble(10) ** power]))

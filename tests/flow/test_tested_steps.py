@@ -8,6 +8,7 @@ import subprocess
 import sys
 from fractions import Fraction
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ import sympy as sp
 
 from canon import Event, Hamiltonian, Lagrangian, coordinates, propagate
 from canon import time as t
+from canon.expression.graph.graph import Graph
 from canon.flow import NonFiniteStateError
 from canon.flow.adaptive import taylor_orbit
 from canon.flow.adaptive.tested_steps import good_steps
@@ -68,6 +70,18 @@ def test_a_step_too_long_is_found_and_no_other() -> None:
     good, missed = good_steps(piece, made)
     assert good == 0
     assert missed > 1e6
+
+
+@pytest.mark.parametrize(("start", "is_good"), [(1000.0, True), (100.0, False), (-1000.0, True)])
+def test_what_a_step_has_missed_counts_in_parts_of_its_larger_end(start: float, is_good: bool) -> None:
+    """A step of 10 to the origin, along x = s − s t/10 + c t², whose end moves by 2 · 10 c too fast."""
+    c = 1e-13
+    made = SimpleNamespace(state=np.zeros(1), dtime=0.0, time=0.0, tol=1e-16, step=lambda **_: None)
+    made.tc = np.array([[100 * c, -start / 10, 0.0]])
+    piece = SimpleNamespace(tcs=np.array([[[start, -start / 10, c]]]), times=np.array([0.0, 10.0]))
+    good, missed = good_steps(piece, made)
+    assert good == is_good
+    assert missed == (0.0 if is_good else pytest.approx(10 * 20 * c / (1e-16 * abs(start)), rel=1e-2))
 
 
 def test_late_times_do_not_look_like_steps_too_long() -> None:
@@ -134,6 +148,19 @@ def test_ordinary_systems_are_not_tested() -> None:
             Hamiltonian((x.momentum**2 + y.momentum**2) / 2 + V, [x, y], [x.momentum, y.momentum]), {}
         )
         assert not may_have_gaps(system.graph, system.rates, 20), V
+
+
+def test_gaps_are_where_no_coefficient_of_the_last_two_is_filled() -> None:
+    """By counting: x″ = x^d has the coefficients kD + 1 of x and kD of its rate, D = d + 1, and k of any size.
+
+    Where kD = order + 1 the gap fills in proportion to the distance from the zero, which does no harm.
+    """
+    for order in range(3, 26):
+        for degree in range(1, 32):
+            graph = Graph()
+            filled = [{k * period for k in range(40)} for period in range(2, degree + 2)]
+            gap = any(multiples.isdisjoint(range(order - 2, order + 2)) for multiples in filled)
+            assert may_have_gaps(graph, [graph.from_sympy(x**degree)], order) == gap, (order, degree)
 
 
 POWERS = (4, 6, 7, 8, 9, 10, 11, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30)

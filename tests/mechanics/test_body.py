@@ -124,6 +124,12 @@ def test_heavy_symmetric_top_from_its_rotation():
     same(kinetic_energy([RigidBody(M, (), (I1, I1, I3), omega=omega)], q), expected)
 
 
+def test_a_body_says_how_it_turns():
+    turned = RigidBody(M, (), (I1, I1, I3), euler_rotation(phi, theta, psi))
+    assert repr(turned).endswith(f"rotation={euler_rotation(phi, theta, psi).tolist()})")
+    assert repr(RigidBody(M, (), (I1, I1, I3), omega=(0, 0, phi.dot))).endswith("omega=(0, 0, phi_dot))")
+
+
 def test_a_body_about_a_fixed_point_by_its_centre():
     """Steiner: the top about its tip, from the motion of its centre of mass."""
     rotation = euler_rotation(phi, theta, psi)

@@ -168,6 +168,7 @@ def test_hamiltonian_fields_go_against_the_brackets(f, g):
         lambda: lagrange_bracket(x, y, [x], [px, py]),
         lambda: lie_bracket([x], [y, x], [x, y]),
         lambda: VectorField([x], [x, y]),
+        lambda: VectorField([x, y], [x]),
         lambda: VectorField([x], [x]).bracket(VectorField([y], [y])),
     ],
 )

@@ -264,6 +264,17 @@ def test_leaving_the_hemisphere_sideways():
         multiplier_along(tilted, {r: a}, theta, start, others={phi: spin})
 
 
+def test_a_multiplier_that_depends_on_the_direction_is_refused():
+    """A charge on a hemisphere in a field across the plane: λ = m g cos θ − m a θ̇² − k a θ̇ in one direction."""
+    plain = hemisphere()
+    charged = Lagrangian(plain.lagrangian.L + k * r**2 * theta.dot / 2, [r, theta])
+    held = ConstrainedLagrangian(charged, holonomic=[r - a])
+    force = multiplier_in_contact(held, {r: a}, (theta,))
+    assert vanishes(force - (m * g * cos(theta) - m * a * theta.dot**2 - k * a * theta.dot)).holds
+    with pytest.raises(ValueError, match="depends on the direction of motion"):
+        multiplier_along(held, {r: a}, theta, sp.S.Zero)
+
+
 @pytest.mark.parametrize(
     ("make", "words"),
     [

@@ -271,6 +271,14 @@ def test_an_unknown_parametric_function_is_undecided():
         unknown.evaluate({q: 0.5, Q: 1.0}, {p: 1.0})
 
 
+def test_the_variables_of_a_function_are_all_different():
+    for variables in (([q], [q], [Q], [P]), ([q], [p], [Q], [Q]), ([q], [p], [Q], [p])):
+        with pytest.raises(ValueError, match="of 1 degree of freedom needs 4 different symbols"):
+            GeneratingFunction(1, q * Q, *variables)
+    with pytest.raises(ValueError, match="of 2 degrees of freedom needs 8 different symbols"):
+        GeneratingFunction(1, q * Q, [q, x], [p, px], [Q], [P])
+
+
 def test_from_f_to_the_map_and_back():
     P_ = sp.Symbol("P", positive=True)
     F1 = GeneratingFunction(1, m * w * qp**2 * cot(Q) / 2, qp, p, Q, P_)

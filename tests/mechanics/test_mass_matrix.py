@@ -37,6 +37,12 @@ def test_no_digits_are_an_error(gap):
         acceleration_function(near_singular(), {GAP: gap})([0.3, 0.7], [0.0, 0.0], 0.0)
 
 
+@pytest.mark.parametrize("size", [1e-6, 1e-200, 1e200])
+def test_small_forces_find_a_singular_matrix_as_large_ones_do(size):
+    with pytest.raises(ArithmeticError, match="the mass matrix is singular at this point"):
+        acceleration_function(near_singular(), {GAP: 2.0**-52})([0.3 * size, 0.7 * size], [0.0, 0.0], 0.0)
+
+
 def test_singular_only_up_to_rounding():
     """M = [[1, c], [c, c²]] with c = 1/10·3: rounding makes its determinant 10⁻¹⁷ rather than 0."""
     c = sp.Symbol("c", positive=True)

@@ -221,6 +221,16 @@ def test_euler_equations_of_a_free_body():
             ),
             "cannot move like that",
         ),
+        (
+            lambda: (
+                NewtonEuler(
+                    [Particle(m, (x, theta, sp.S.Zero))],
+                    [x, theta],
+                    weights([Particle(m, (x, theta, 0))], (0, 0, -g)),
+                ).solution
+            ),
+            "cannot move like that",
+        ),
         (lambda: NewtonEuler([Particle(m, (x,))], [x], [Load(0, (P**2,))], [P]).solution, "not linear"),
     ],
 )

@@ -190,6 +190,15 @@ def test_implicit_steps():
     assert implicit([Q - q - h * P, P - p + h * f(Q)]).is_canonical().fails
 
 
+def test_an_implicit_map_has_an_equation_for_each_variable():
+    old, new = sp.symbols("q:3 p:3", real=True), sp.symbols("Q:3 P:3", real=True)
+    still = [b - a for a, b in zip(old, new, strict=True)]
+    assert ImplicitTransformation(old[:3], old[3:], new[:3], new[3:], still).is_canonical().holds
+    for equations in (still[:5], [*still, old[0], old[1]]):
+        with pytest.raises(ValueError, match="equations for a map of 6 variables"):
+            ImplicitTransformation(old[:3], old[3:], new[:3], new[3:], equations)
+
+
 def test_new_hamiltonians_of_moving_maps():
     H = p**2 / (2 * m)
     boost = MOVING["Galilean boost"].map
@@ -280,6 +289,15 @@ def test_bilinear_covariants():
 def test_refusals_say_what_is_wrong(make, words):
     with pytest.raises(ValueError, match=words):
         make()
+
+
+def test_an_inverse_takes_no_name_of_the_map():
+    """q → p, p → −q has the inverse q = −P, p = Q; in the old names that would be the map once more."""
+    exchange = CanonicalTransformation([q], [p], [p], [-q])
+    assert inverse_transformation(exchange, [Q], [P]).images == (-P, Q)
+    for new_q, new_p in ((q, p), (p, q), (Q, p), (q, P), (p, P), (Q, q), (Q, Q)):
+        with pytest.raises(ValueError, match="different symbols, none of them an old variable"):
+            inverse_transformation(exchange, [new_q], [new_p])
 
 
 def test_maps_with_arbitrary_functions_have_their_valence_or_none():

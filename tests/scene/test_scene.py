@@ -203,3 +203,26 @@ def test_a_question_builds_what_it_needs_and_nothing_else(question, built):
     assert set(vars(scene)) - {f.name for f in fields(scene)} == built
     if "hamiltonian" not in built and "lagrangian" in built:
         assert not {"accelerations", "jacobi_energy"} & set(vars(scene.lagrangian))
+
+
+@pytest.mark.parametrize(
+    ("name", "solution"),
+    [
+        ("sliding-mass-pendulum", "horizontal place: harmonic"),
+        ("harmonic-oscillator", "place: 10 cm cos ωt"),
+        ("isotropic-oscillator", "x: 10 cm cos ωt"),
+        ("kepler", "x by Kepler's equation"),
+        ("routh-two-degree", "q2 = A cos ωt"),
+        ("unicycle", "y on the circle"),
+        ("crossed-fields", "x: cycloid"),
+        ("penning-trap", "z: axial oscillation"),
+    ],
+)
+def test_a_solution_comes_back_after_the_time_scale_and_not_before(name, solution):
+    scene = find(name)
+    (known,) = (each for each in scene.solutions if each.name == solution)
+    period = scene.time_scale(scene.values)
+    at = np.linspace(0.0, period, 61)
+    values = np.asarray(known.value(scene.values, at)) - known.value(scene.values, np.zeros(1))
+    assert abs(values[-1]) < 1e-12 * abs(values).max()
+    assert (abs(values[1:-1]) > 1e-12 * abs(values).max()).all()

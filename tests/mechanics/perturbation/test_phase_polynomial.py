@@ -1,5 +1,6 @@
 """Phase-space polynomials over ℚ, parameters and algebraic numbers: their arithmetic beside SymPy's."""
 
+import pytest
 import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -72,3 +73,18 @@ def test_equations_of_algebraic_numbers_have_whole_coefficients():
     assert all(number.is_Integer for number in ring.relation)
     assert ring.relation[-1] == 1
     assert sp.minimal_polynomial(ring.root, a) == sp.Poly(ring.relation[::-1], a).as_expr()
+
+
+@pytest.mark.parametrize(
+    ("name", "made_of"),
+    [
+        ("rational", "rational numbers"),
+        ("nested root", f"{FIELDS['nested root'][0].root}"),
+        ("parameter", "the parameters k"),
+        ("root of a parameter", f"the parameters k and {FIELDS['root of a parameter'][0].root}"),
+    ],
+)
+def test_a_number_outside_of_the_field_is_refused_with_what_the_field_is_made_of(name, made_of):
+    with pytest.raises(ValueError) as refused:
+        FIELDS[name][0].number(sp.pi)
+    assert str(refused.value) == f"pi is not a rational function of {made_of}"
