@@ -228,11 +228,14 @@ MEANINGS = {
     "D(D(x))(t)": "x_ddot",
     r"\[Theta]''[t] == -(g/l) Sin[\[Theta][t]]": "theta_ddot + g*sin(theta)/l",
     "Eq(a, b)": "a - b",
+    "-g/l sin θ": "-g*sin(theta)/l",
+    "g sin θ/l": "g*sin(theta)/l",
+    "cos φ/r²": "cos(phi)/r**2",
     "V'(r - a)": "",
     "V''(2x)": "",
 }
 """What the page's table of plain text shows, and what it is; empty where the meaning has no plain spelling."""
-OTHER_ROWS = ("left sides", "chains", "several")
+OTHER_ROWS = ("around", "left sides", "chains", "several")
 """Rows about whole answers, which are tested with questions."""
 
 

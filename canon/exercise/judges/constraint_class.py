@@ -30,13 +30,14 @@ if TYPE_CHECKING:
 __all__ = ["constraint_class", "degrees_of_freedom"]
 
 _PAIRS = (("holonomic", "nonholonomic"), ("scleronomic", "rheonomic"), ("bilateral", "unilateral"))
+_WORDS_APART = re.compile(r"\s*[,;]\s*(?:and\s+)?|\s+and\s+")
 _RELATION = re.compile(r"(<=|>=|<|>|=|≤|≥|\\leq?\b|\\geq?\b)")
 
 
 def constraint_class(reading: Reading) -> Iterator[Question]:
     """Each word of the claim is right for the constraints as a whole."""
     constraints = _constraints(reading)
-    words = [_spelled(word) for word in reading.claim.keys["class"]]
+    words = [_spelled(word) for said in reading.words("class") for word in _WORDS_APART.split(said.strip())]
     pairs = [_pair_of(reading, i, word) for i, word in enumerate(words)]
     verdicts: list[Verdict] = []
     for word, pair in zip(words, pairs, strict=True):

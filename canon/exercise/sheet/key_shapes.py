@@ -17,7 +17,7 @@ from canon.exercise.sheet.kinds import KINDS, kind_of
 from canon.expression.text.tokens import GREEK
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from canon.exercise.sheet.kind import Kind
 
@@ -195,15 +195,21 @@ def _fits(value: Any, shape: Shape) -> bool:
         case Shape.LISTS:
             return _table(value) and all(_texts(item) for item in value.values())
         case Shape.BRACKETS:
-            return isinstance(value, list) and len(value) > 0 and all(_bracket(item) for item in value)
+            return _bracket(value) or _are(value, _bracket)
         case Shape.BODIES:
-            return isinstance(value, list) and len(value) > 0 and all(_body(item) for item in value)
+            return _are(value, _body)
         case Shape.FORCES:
-            return isinstance(value, list) and len(value) > 0 and all(_force(item) for item in value)
+            return _are(value, _force)
         case Shape.WORDS:
-            return isinstance(value, list) and len(value) > 0 and all(isinstance(w, str) for w in value)
-        case Shape.VALUES:
-            return isinstance(value, list) and all(_fits(item, Shape.EXPRESSIONS) for item in value)
+            return isinstance(value, str) or _are(value, lambda word: isinstance(word, str))
+        case Shape.VALUES:  # one table is read as a list of one
+            tables = [value] if isinstance(value, Mapping) else value
+            return isinstance(tables, list) and all(_fits(item, Shape.EXPRESSIONS) for item in tables)
+
+
+def _are(value: Any, fits: Callable[[Any], bool]) -> bool:
+    """Whether this is a list, not empty, of what fits."""
+    return isinstance(value, list) and len(value) > 0 and all(fits(item) for item in value)
 
 
 def _interval(value: Any) -> bool:

@@ -40,6 +40,8 @@ OTHER_SPELLINGS: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "H": ("H_total", "H_tot", "H_system", "H_sys", "H_ges"),
         "L": ("L_total", "L_tot", "L_system", "L_sys", "L_ges"),
         "W": ("W_1", "chi"),
+        "T": ("K", "E_kin", "T_kin", "E_k", "T_total", "T_tot"),
+        "dof": ("f", "n", "N", "s", "DOF"),
         "K": ("K_1", "H'", "H_av", "H_new"),
         "energy_rate": (),
         "rhs": (),

@@ -136,10 +136,12 @@ class _Plain:
             case Shape.LISTS if isinstance(value, Mapping):
                 return {part: self.components(f"{key}.{part}", texts) for part, texts in value.items()}
             case Shape.VALUES:
-                places = ((f"{key}[{i}]", table) for i, table in enumerate(value))
+                tables = [value] if isinstance(value, Mapping) else value
+                places = ((f"{key}[{i}]", table) for i, table in enumerate(tables))
                 return [one for place, table in places for one in signed_tables(place, table, self.fault)]
             case Shape.BRACKETS:
-                return [self.bracket(f"{key}[{i}]", pair) for i, pair in enumerate(value)]
+                pairs = [value] if isinstance(value, Mapping) else value
+                return [self.bracket(f"{key}[{i}]", pair) for i, pair in enumerate(pairs)]
             case _:
                 return value
 

@@ -37,6 +37,16 @@ _PROMPT = re.compile(
     r"|^\s*(?:EOM|EoM|Answer|Solution|Result|Equation of motion|Hamiltonian|Lagrangian):(?=\s)"
 )
 """What programs write before a line."""
+_SAID_BEFORE = re.compile(
+    r"^\s*(?:(?:(?:so|thus|hence|therefore|finally|then|(?:and |so )?we (?:get|find|have|obtain)|this gives"
+    r"|it follows that)"
+    r"\s?[,:]?\s{1,9}(?=[^\s+*/=<>^)\],-]|=>))|(?:=>|⇒|⟹|∴|→|•|▪)\s{0,9}(?=\S)){1,9}",
+    re.IGNORECASE,
+)
+_SAID_BEHIND = re.compile(r"[\s.,;]{0,9}(?:✓|✔|∎|□|■|\bQED\b|q\.\s?e\.\s?d\.?)[\s.]*$")
+"""Words and signs around a formula that say nothing of it."""
+_APART_ACCENT = re.compile(r"(?<=[^\W\d]) ([\u0307\u0308])")
+"""A dot that Word's linear format sets apart from its letter."""
 _EMPHASISED = re.compile(r"^(\s*)(?:\*\*|__|[*_])([A-Za-z]\w{0,9})(?:\*\*|__|[*_])(\s*=)")
 """A bold or slanted name before ``=``."""
 _ELEMENTWISE = re.compile(r"(?<=[\w)\]])\.([*/^])")
@@ -65,6 +75,8 @@ def unmarked(text: str) -> str:
     """
     if len(text) > MAX_CHARACTERS:
         return text
+    text = _SAID_BEHIND.sub(_blank, _SAID_BEFORE.sub(_blank, text))
+    text = _APART_ACCENT.sub(r"\1 ", text.replace("〖", "(").replace("〗", ")"))
     text = _ASSIGNED.sub(r"\1=", _PROMPT.sub(_blank, text))
     if "\n" not in text.strip():
         text = text.replace("│", "|").replace("ℯ", "%e")

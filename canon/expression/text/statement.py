@@ -136,10 +136,10 @@ def _parts(text: str, depths: list[int], signs: list[int]) -> list[tuple[int, in
     for stop, after in [*((m.start(), m.end()) for m in ends), (len(text), len(text))]:
         inside = signs[bisect(signs, start - 1) : bisect(signs, stop - 1)]
         for left, right in pairwise(inside):
-            comma = text.rfind(",", left, right)
-            if comma > 0 and depths[comma] == 0:
-                parts.append((start, comma))
-                start = comma + 1
+            commas = [i for i in range(left, right) if text[i] == "," and depths[i] == 0]
+            if commas:
+                parts.append((start, commas[-1]))
+                start = commas[-1] + 1
         parts.append((start, stop))
         start = after
     return parts

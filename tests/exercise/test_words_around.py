@@ -1,0 +1,89 @@
+"""Words and signs around formulas, and shapes of keys, as people give them: each beside what must not pass."""
+
+from __future__ import annotations
+
+import pytest
+
+from canon.exercise.explained_judgement import judgements
+from canon.exercise.sheet.sheet import claim_from
+
+
+def judged(**keys: object):
+    claim = claim_from({"id": "a", **keys})
+    assert not claim.errors
+    return [judgement for judgement, _ in judgements(claim)][-1]
+
+
+PENDULUM = {
+    "kind": "euler-lagrange", "q": ["theta"], "L": "m*l**2*theta_dot**2/2 + m*g*l*cos(theta)",
+    "parameters": {"m": "positive", "g": "positive", "l": "positive"},
+}  # fmt: skip
+PAIR = {
+    "kind": "euler-lagrange",
+    "q": ["x", "y"],
+    "L": "x_dot**2/2 + y_dot**2/2 - k*x*y",
+    "parameters": {"k": "real"},
+}
+ROLLING = {"kind": "constraint-class", "q": ["x", "y", "z"], "constraints": ["x_dot - z*y_dot"]}
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "We get {}", "therefore {}", "Thus, {}", "Hence: {}", "So {}", "it follows that {}", "so we find {}", "=> {}",
+        "⇒ {}", "∴ {}", "• {}", "{} ✓", "{}. ∎", "{}  q.e.d.", "therefore => {}",
+    ],
+)  # fmt: skip
+def test_words_that_say_nothing_are_passed_over(said: str) -> None:
+    assert judged(**PENDULUM, claim=[said.format("θ'' + g/l sin θ = 0")]).status == "holds"
+    assert judged(**PENDULUM, claim=[said.format("θ'' - g/l sin θ = 0")]).status == "fails"
+
+
+def test_words_before_dollars() -> None:
+    assert judged(**PENDULUM, claim=[r"We get $\ddot\theta + \frac gl\sin\theta = 0$"]).status == "holds"
+
+
+def test_declared_names_are_no_words() -> None:
+    free = {"kind": "equality-only", "parameters": {"so": "real", "then": "real"}}
+    assert judged(**free, lhs="so*then", rhs="then*so").status == "holds"
+    assert judged(**free, lhs="so - then", rhs="then - so").status == "fails"
+
+
+def test_words_linear_format() -> None:
+    assert judged(**PENDULUM, claim=["θ ̈+g/l sin\u2061〖θ〗=0"]).status == "holds"
+    assert judged(**PENDULUM, claim=["θ ̇+g/l sin\u2061〖θ〗=0"]).status == "fails"
+
+
+@pytest.mark.parametrize(
+    "said",
+    ["diff(x,t,2) = -k*y, diff(y,t,2) = -k*x", "D[x[t],{t,2}] == -k y[t], D[y[t],{t,2}] == -k x[t]"],
+)
+def test_commas_between_equations_with_commas_inside(said: str) -> None:
+    assert judged(**PAIR, claim=said).status == "holds"
+    assert judged(**PAIR, claim=said.replace("-k", "k", 1)).status == "fails"
+
+
+@pytest.mark.parametrize(
+    "said", ["nonholonomic", ["nonholonomic, scleronomic"], "nonholonomic and bilateral"]
+)
+def test_one_word_or_several_in_one_text(said: object) -> None:
+    assert judged(**ROLLING, **{"class": said}).status == "holds"
+    assert judged(**ROLLING, **{"class": "nonholonomic and rheonomic"}).status == "fails"
+
+
+def test_a_list_of_one_table_needs_no_brackets() -> None:
+    asked = {"kind": "poisson-bracket", "q": ["x"], "p": ["p"]}
+    assert judged(**asked, pairs={"f": "x", "g": "p", "value": "1"}).status == "holds"
+    assert judged(**asked, pairs={"f": "x", "g": "p", "value": "-1"}).status == "fails"
+
+
+@pytest.mark.parametrize("name", ["T", "K", "E_kin", "T_kin"])
+def test_names_of_the_kinetic_energy(name: str) -> None:
+    asked = {
+        "kind": "kinetic-energy",
+        "q": ["x"],
+        "bodies": [{"m": "m", "r": ["x", "0"]}],
+        "parameters": {"m": "positive"},
+    }
+    assert judged(**asked, T=f"{name} = ½ m x'²").status == "holds"
+    assert judged(**asked, T=f"{name} = m x'²").status == "fails"
