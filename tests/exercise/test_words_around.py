@@ -87,3 +87,39 @@ def test_names_of_the_kinetic_energy(name: str) -> None:
     }
     assert judged(**asked, T=f"{name} = ½ m x'²").status == "holds"
     assert judged(**asked, T=f"{name} = m x'²").status == "fails"
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "θ'' + ω₀² sin θ = 0, ω₀² = {}",
+        "θ'' + ω² sin θ = 0 where ω² = {}",
+        "ω² = {}; θ'' = -ω² sin θ",
+        "θ'' + ω² sin θ = 0, with ω = √({})",
+    ],
+)
+def test_what_an_answer_abbreviates_is_put_in(said: str) -> None:
+    assert judged(**PENDULUM, claim=said.format("g/l")).status == "holds"
+    assert judged(**PENDULUM, claim=said.format("l/g")).status == "fails"
+    assert judged(**PENDULUM, claim=[said.format("g/l")]).status == "holds"
+
+
+@pytest.mark.parametrize(
+    ("said", "status"),
+    [
+        ("H = p²/(2I) - mgl cosθ, I = ml²", "holds"),
+        ("H = p²/(2I) - mgl cosθ, I = 2ml²", "fails"),
+        ("H = T + V, T = p²/(2ml²), V = -mgl cosθ", "holds"),
+        ("H = T + V, T = p²/(2ml²), V = mgl cosθ", "fails"),
+        ("H = p²/(2I) - mgl cosθ", "fails"),
+    ],
+)
+def test_an_expression_with_abbreviations(said: str, status: str) -> None:
+    asked = {**PENDULUM, "kind": "legendre-hamiltonian", "p": ["p"]}
+    assert judged(**asked, H=said).status == status
+
+
+def test_a_list_of_definitions_alone_is_the_answer() -> None:
+    asked = {"kind": "canonicity", "q": ["q"], "p": ["p"], "parameters": {"a": "real"}}
+    assert judged(**asked, Q="Q = q cos a - p sin a", P="P = q sin a + p cos a").status == "holds"
+    assert judged(**PENDULUM, claim=["ω² = g/l"]).status == "invalid"

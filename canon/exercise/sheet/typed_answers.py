@@ -19,6 +19,7 @@ from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.kinds import kind_of
 from canon.exercise.sheet.left_sides import (
     OTHER_SPELLINGS,
+    Label,
     Quantity,
     components_asked,
     is_asked,
@@ -27,6 +28,7 @@ from canon.exercise.sheet.left_sides import (
     label_of,
 )
 from canon.exercise.sheet.matrix_products import components_of_products, equations_of_products
+from canon.exercise.sheet.quantities.abbreviations import without_abbreviations
 from canon.exercise.sheet.quantities.given_functions import GivenFunctions, key_at
 from canon.exercise.sheet.typed_values import signed_tables, values_under
 from canon.exercise.sheet.vector_equations import vector_equations
@@ -119,8 +121,8 @@ class _Plain:
         """Return what stands under a key in plain form."""
         if key in _UNTOUCHED:
             return value
-        if key in self.kind.answer and _EXPANSIONS & self.kind.shapes.keys() and not self.scope.declares("O"):
-            value = self.without_remainders(key, value)
+        if key in self.kind.answer:
+            value = self.answer(key, value)
         if key in self.kind.several:
             return self.several(key, value)
         match self.kind.shapes.get(key):
@@ -136,14 +138,40 @@ class _Plain:
             case Shape.LISTS if isinstance(value, Mapping):
                 return {part: self.components(f"{key}.{part}", texts) for part, texts in value.items()}
             case Shape.VALUES:
-                tables = [value] if isinstance(value, Mapping) else value
-                places = ((f"{key}[{i}]", table) for i, table in enumerate(tables))
+                places = ((f"{key}[{i}]", table) for i, table in enumerate(_tables(value)))
                 return [one for place, table in places for one in signed_tables(place, table, self.fault)]
             case Shape.BRACKETS:
-                pairs = [value] if isinstance(value, Mapping) else value
-                return [self.bracket(f"{key}[{i}]", pair) for i, pair in enumerate(pairs)]
+                return [self.bracket(f"{key}[{i}]", pair) for i, pair in enumerate(_tables(value))]
             case _:
                 return value
+
+    def answer(self, key: str, value: Any) -> Any:
+        """Return an answer without remainders, where those are understood, and with what it abbreviates put in."""
+        if _EXPANSIONS & self.kind.shapes.keys() and not self.scope.declares("O"):
+            value = self.without_remainders(key, value)
+        return value if key in self.kind.several else self.written_out(key, value)
+
+    def written_out(self, key: str, value: Any) -> Any:
+        """Return an answer with what it abbreviates put in."""
+        texts: list[Any] = value if isinstance(value, list) else [value]
+        shape = self.kind.shapes.get(key)
+        if shape not in (Shape.TEXT, Shape.TEXTS):
+            return value
+        if not all(type(text) is str for text in texts):
+            return value
+        names = components_asked(key, self.of.keys, self.scope) if shape is Shape.TEXTS else ()
+        asked = (self.quantity(key), *names)
+
+        def is_asked_for(label: Label) -> bool:
+            return key == "I" or any(is_asked(label, each, self.scope) for each in asked)
+
+        try:
+            found = without_abbreviations(texts, self.scope, is_asked_for)
+        except LanguageError:  # it is told where the answer is read
+            return value
+        if found is None:
+            return value
+        return found if isinstance(value, list) or len(found) > 1 else found[0]
 
     def without_remainders(self, key: str, value: Any) -> Any:
         """Return expansions without ``+ O(x^5)`` and ``+ …``, which is told."""
@@ -444,6 +472,11 @@ class _Plain:
     def told(self, place: str, text: str, side: Side, reason: str, remedy: str) -> Exception:
         """Return the error of one side of a text."""
         return self.fault(place, LanguageError(text, side.column, reason, remedy))
+
+
+def _tables(value: Any) -> Any:
+    """Return a list of tables; one alone is a list of one."""
+    return [value] if isinstance(value, Mapping) else value
 
 
 def _no_equation(beside: Sequence[Side], unknown: Side | None) -> tuple[str, str]:

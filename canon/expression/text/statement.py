@@ -49,7 +49,7 @@ class Statement:
 
 _OPEN, _CLOSE = "([{⟨", ")]}⟩"
 _EQUALS = re.compile(r"(?<![<>!:=≠])(?:==|:=|=|≡|≔)(?![=>])")
-_ENDS = re.compile(r"[;\n]|⇒|⟹|∴|=>|(?<=\s)and(?=\s)")
+_ENDS = re.compile(r"[;\n]|⇒|⟹|∴|=>|(?<=\s)(?:and|where)(?=\s)")
 MAX_SIDES = 100
 """Most sides in one field."""
 
@@ -57,7 +57,7 @@ MAX_SIDES = 100
 def plain_statements(text: str) -> tuple[Statement, ...]:
     """Return the statements of a text that is no LaTeX.
 
-    They are parted by ``;``, new lines, ``and``, ``⇒``, and by commas between equations; never inside brackets.
+    They are parted by ``;``, new lines, ``and``, ``where``, ``⇒``, and by commas between equations, not inside brackets.
 
     Raises
     ------
