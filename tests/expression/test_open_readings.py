@@ -21,6 +21,9 @@ SCOPE = Scope({**_STEADY, **_MOVING})
         ("g sinθ/l", "g*sin(theta)/l"),
         ("cosθ/l²", "cos(theta)/l**2"),
         ("sinθ/(2l)", "sin(theta)/(2*l)"),
+        ("cosθ/sinθ", "cos(theta)/sin(theta)"),
+        (r"$\cos\theta/\sin\theta$", "cos(theta)/sin(theta)"),
+        (r"$x^{2}$", "x**2"),
         ("-g/l sinθ", "-g*sin(theta)/l"),
         (r"$g\sin\theta/l$", "g*sin(theta)/l"),
         (r"$\sin\theta/(2l)$", "sin(theta)/(2*l)"),
@@ -62,6 +65,7 @@ def test_what_has_one_reading_is_read(typed: str, meant: str) -> None:
         (r"$e^{\gamma t}$", "Euler's number"),
         (r"$e^{i\beta}$", "Euler's number"),
         ("asin x", "asin or a sin"),
+        (r"$x^{(2)}$", "derivative of x, or a power"),
     ],
 )
 def test_what_has_two_readings_is_asked_about(typed: str, asked: str) -> None:

@@ -125,6 +125,8 @@ class ArgumentEnd:
     def divides(self, argument: tuple[Piece, ...], below: Piece) -> bool:
         r"""Whether a slash behind a function divides it, ``g\sin\theta/l``: nobody divides an angle by a length."""
         alone = len(argument) == 1 and isinstance(argument[0], Name) and is_angle(argument[0].text)
+        if alone and is_function(below):
+            return True
         base = unbraced(below.base) if isinstance(below, Powered) else unbraced(below)
         read = isinstance(base, Group | Name)
         return alone and read and any(not counts(name.text) and name.text != "pi" for name in _names_of(base))

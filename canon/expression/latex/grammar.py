@@ -280,7 +280,11 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         return FactorRun(tuple(children), children[0].column)
 
     def power(self, children: list[Any]) -> Powered:
-        base, _, exponent = children
+        base, sign, exponent = children
+        inner = exponent.inner if isinstance(exponent, Group) and exponent.braces else None
+        if isinstance(base, Name) and isinstance(inner, Group) and whole(self.meaning.node(inner)) is not None:
+            reason = f"is this the derivative of {base.text}, or a power?"
+            self.meaning.refuse(sign.column, reason, "write dots for rates, ^2 for a power")
         return self.meaning.raised(base, self.meaning.node(exponent))
 
     def head(self, children: list[Any]) -> Head:

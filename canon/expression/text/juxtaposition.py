@@ -97,6 +97,8 @@ class Reader(FactorParser):
         argument = self.tokens[self.at - 2]
         if argument is not self.bare_start[1] or argument.kind != "name" or not is_angle(argument.text):
             return False
+        if is_function(self):  # cos θ/sin θ
+            return True
         texts = [token.text for token in self.tokens[self.at :]]
         end = texts.index(")") if texts[0] == "(" and ")" in texts else 1
         return any(self.scope.declares(text) and not counts(text) for text in texts[:end])

@@ -57,7 +57,7 @@ MAX_SIDES = 100
 def plain_statements(text: str) -> tuple[Statement, ...]:
     """Return the statements of a text that is no LaTeX.
 
-    They are parted by ``;``, new lines, ``and``, ``where``, ``⇒``, and by commas between equations, not inside brackets.
+    They are parted by ``;``, new lines, ``and``, ``where``, ``⇒``, and commas between equations, not inside brackets.
 
     Raises
     ------
