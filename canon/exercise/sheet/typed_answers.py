@@ -14,7 +14,9 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from canon.exercise.sheet import field_texts
-from canon.exercise.sheet.equation_numbers import without_numbers
+from canon.exercise.sheet.equations.matrix_products import components_of_products
+from canon.exercise.sheet.equations.sides import Sides
+from canon.exercise.sheet.equations.typed_equations import typed_equations
 from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.kinds import kind_of
 from canon.exercise.sheet.left_sides import (
@@ -23,23 +25,19 @@ from canon.exercise.sheet.left_sides import (
     Quantity,
     components_asked,
     is_asked,
-    is_definition,
     is_of_another,
     label_of,
 )
-from canon.exercise.sheet.matrix_products import components_of_products, equations_of_products
 from canon.exercise.sheet.quantities.abbreviations import without_abbreviations
-from canon.exercise.sheet.quantities.given_functions import GivenFunctions, key_at
 from canon.exercise.sheet.typed_values import signed_tables, values_under
-from canon.exercise.sheet.vector_equations import vector_equations
-from canon.expression.parse import LanguageError, parse_expression, statements_of
+from canon.expression.parse import LanguageError, parse_expression
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from canon.exercise.sheet.sheet import Claim
     from canon.expression.text.scope import Scope
-    from canon.expression.text.statement import Side, Statement
+    from canon.expression.text.statement import Side
 
     _Fault = Callable[[str, LanguageError], Exception]
 
@@ -110,6 +108,7 @@ class _Plain:
         self.fault = fault
         self.kind = kind_of(claim.kind, claim.keys)
         self.found = TypedAnswers()
+        self.sides = Sides(claim.keys, scope, fault, self.found.passed)
 
     def claim(self) -> TypedAnswers:
         """Return all keys, those with texts in plain form."""
@@ -129,7 +128,11 @@ class _Plain:
             case Shape.TEXT:
                 return self.of_text(key, value)
             case Shape.TEXTS:
-                return self.equations(key, value) if self.has_equations(key) else self.components(key, value)
+                return (
+                    typed_equations(key, value, self.sides)
+                    if self.has_equations(key)
+                    else self.components(key, value)
+                )
             case Shape.EXPRESSIONS if isinstance(value, Mapping):
                 return {
                     name: self.expression(f"{key}.{name}", text, Quantity(name, ((name, 0),)))
@@ -198,7 +201,7 @@ class _Plain:
         """Return the one text under a key in plain form."""
         text = value[0] if isinstance(value, list) else value
         if key in _EQUATIONS:
-            equations = self.equations(key, [text])
+            equations = typed_equations(key, [text], self.sides)
             return equations[0] if len(equations) == 1 else text
         return self.expression(key, text, self.quantity(key))
 
@@ -217,7 +220,7 @@ class _Plain:
         """Return the text of one expression without its left sides; what else it says becomes links."""
         if not isinstance(text, str):
             return text
-        statements = self.statements(place, text)
+        statements = self.sides.statements(place, text)
         if len(statements) > 1:
             named = [s for s in statements if self.is_asked(s.sides[0], asked) and s.sides[1:]]
             other = next((s for s in statements if s not in named), statements[-1]).sides[0]
@@ -228,7 +231,7 @@ class _Plain:
                 )
             else:
                 reason, remedy = f"one expression is asked for: {asked.shown}", "leave the others out"
-            raise self.told(place, text, other, reason, remedy)
+            raise self.sides.told(place, text, other, reason, remedy)
         first, *others = next(iter(statements)).sides
         sides = [first, *(side for side in others if not self.is_constant(place, side))]
         if len(sides) == 1:
@@ -250,8 +253,11 @@ class _Plain:
         for side in sides[:-1]:
             if self.is_asked(side, asked):
                 continue
-            if self.is_origin(place, side, asked.shown) or self.given(place).put_in(side.text) is not None:
-                made = self.origin(place, side, sides[-1])
+            if (
+                self.sides.is_origin(place, side, asked.shown)
+                or self.sides.given(place).put_in(side.text) is not None
+            ):
+                made = self.sides.origin(place, side, sides[-1])
                 self.found.links += [Link(place, each, each.partition(" = ")[0]) for each in made]
             else:
                 self.read(place, text, side, asked)
@@ -261,29 +267,6 @@ class _Plain:
             Link(place, field_texts.equation_between(a, b), a.text) for a, b in pairwise(readable)
         ]
         return sides[-1].text
-
-    def is_origin(self, place: str, side: Side, asked: str) -> bool:
-        """Tell whether a side says where a formula comes from: of functions, given or not."""
-        return (
-            is_definition(side.said, asked, self.scope) or self.given(place).worked_out(side.said) is not None
-        )
-
-    def origin(self, place: str, side: Side, near: Side) -> list[str]:
-        """Return the equation of an origin with a side near it; one of what is not given is passed over."""
-        found = self.given(place).equations(side, near)
-        if found is None:
-            self.passed(place, side)
-        return found or []
-
-    def given(self, place: str) -> GivenFunctions:
-        """Return the functions that the claim gives for an answer at a place."""
-        return GivenFunctions(self.of.keys, key_at(place), self.scope)
-
-    def passed(self, place: str, side: Side) -> None:
-        """Note a definition that nothing can be asked of."""
-        self.found.passed.append(
-            f"{side.text.strip().lstrip('$')} in {place} is passed over: what it is made of is not given here"
-        )
 
     def read(self, place: str, text: str, side: Side, asked: Quantity) -> None:
         """Refuse a side that is neither a name of the answer nor an expression."""
@@ -298,10 +281,10 @@ class _Plain:
     def refuse_other_names(self, place: str, text: str, side: Side, asked: Quantity) -> None:
         """Refuse a left side that is the name of something else."""
         label = label_of(side.said)
-        given = self.given(place)
+        given = self.sides.given(place)
         if place.startswith("values.") and asked.shown in re.findall(r"[^\W\d_]+(?:_\w+)?", side.said):
             raise self.contradiction(place, text, side, asked)
-        if is_of_another(side.said) and self.is_origin(place, side, asked.shown):
+        if is_of_another(side.said) and self.sides.is_origin(place, side, asked.shown):
             if given.worked_out(side.said) is None:
                 raise self.contradiction(place, text, side, asked)
             return
@@ -315,7 +298,7 @@ class _Plain:
         """Return the error of a left side that is not what is asked."""
         shown = side.text.strip().strip("$").strip()[:40]
         remedy = f"write {asked.shown} = … if that is meant, or only what stands on the right"
-        return self.told(
+        return self.sides.told(
             place, text, side, f"{asked.shown} is asked for here, and this says {shown} = …", remedy
         )
 
@@ -331,7 +314,9 @@ class _Plain:
         """Refuse ``L = …`` as a constant of the motion where L is the Lagrangian of the claim."""
         if place == "I" and side.said == "L" and isinstance(self.of.keys.get("L"), str):
             reason = "is L the Lagrangian here, or a name of the constant?"
-            raise self.told(place, text, side, reason, "write L_z = …, or only what stands on the right")
+            raise self.sides.told(
+                place, text, side, reason, "write L_z = …, or only what stands on the right"
+            )
 
     def is_constant(self, place: str, side: Side) -> bool:
         """Tell whether a side only says that the others are constant."""
@@ -363,10 +348,10 @@ class _Plain:
 
     def apart(self, place: str, text: str) -> list[str]:
         """Return the components that stand in one text: in one bracket, or as several equations."""
-        entries = field_texts.of_matrix(text) or components_of_products(text, self.reads(place, text))
+        entries = field_texts.of_matrix(text) or components_of_products(text, self.sides.reads(place, text))
         if entries:
             return entries
-        statements = self.statements(place, text)
+        statements = self.sides.statements(place, text)
         if len(statements) > 1:
             return [field_texts.whole_statement(statement, text) for statement in statements]
         return field_texts.components_of(text) or [text]
@@ -375,7 +360,7 @@ class _Plain:
         """Return components in the order that is asked for, where their left sides say another one."""
         places: list[int] = []
         for i, text in enumerate(texts):
-            sides = self.statements(f"{place}[{i}]", text)[0].sides
+            sides = self.sides.statements(f"{place}[{i}]", text)[0].sides
             named = [j for j, name in enumerate(names) if sides[1:] and self.is_asked(sides[0], name)]
             if len(named) != 1:
                 return list(texts)
@@ -384,109 +369,7 @@ class _Plain:
             return list(texts)
         return [texts[places.index(j)] for j in range(len(names))]
 
-    def equations(self, place: str, value: Any) -> list[Any]:
-        """Return a list of equations, chains taken apart."""
-        texts: list[Any] = self.unnumbered(place, value if isinstance(value, list) else [value])
-        if len(texts) == 1 and isinstance(texts[0], str):
-            text = texts[0]
-            texts = vector_equations(text) or field_texts.equations_listed(text) or self.products(place, text)
-        found: list[Any] = []
-        for i, text in enumerate(texts):
-            where = f"{place}[{i}]"
-            statements = self.statements(where, text) if isinstance(text, str) else ()
-            plain = (
-                len(statements) == 1
-                and len(statements[0].sides) < 3
-                and not any(is_definition(side.said, "claim", self.scope) for side in statements[0].sides)
-            )
-            if plain or not isinstance(text, str):
-                found.append(text)
-                continue
-            for statement in statements:
-                found += self.chain(where, text, statement)
-        return found
-
-    def products(self, place: str, text: str) -> list[str]:
-        """Return the equations of the components where the sides are sums and products of matrices."""
-        return equations_of_products(text, self.reads(place, text)) or [text]
-
-    def reads(self, place: str, text: str) -> Callable[[str], object]:
-        """Return what reads one piece of a text and raises its error."""
-
-        def read(piece: str) -> object:
-            try:
-                return parse_expression(piece, self.scope)
-            except LanguageError as error:
-                raise self.fault(place, error.at_home_in(text)) from None
-
-        return read
-
-    def unnumbered(self, place: str, texts: list[Any]) -> list[Any]:
-        """Return equations without the numbers before or behind them."""
-        if not all(type(text) is str for text in texts):
-            return texts
-        try:
-            return without_numbers(texts)
-        except LanguageError as error:
-            raise self.fault(f"{place}[{texts.index(error.text)}]", error) from None
-
-    def chain(self, place: str, text: str, statement: Statement) -> list[str]:
-        """Return the equations that a chain says, definitions in it passed over."""
-        sides = statement.sides
-        rest = [side for side in sides if not self.is_origin(place, side, "claim")]
-        if len(rest) == len(sides):
-            links = [field_texts.equation_between(a, b) for a, b in pairwise(sides)]
-            return links or [sides[0].text]
-        made = self.worked_out(place, sides, rest)
-        said = [side for side in rest if side.said.strip("$0. ")]
-        if len(rest) == 1 and said and sides[0] not in rest and "-" in sides[0].said:
-            return made or [
-                said[0].text
-            ]  # d/dt(∂L/∂q̇) − ∂L/∂q is what stands there, and zero; or it equals the forces
-        equations = [*made, *(field_texts.equation_between(a, b) for a, b in pairwise(rest))]
-        if not said or not equations:
-            unknown = next((side for side in sides if self.is_unknown(place, side)), None)
-            reason, remedy = _no_equation(said, unknown)
-            raise self.told(place, text, unknown or sides[0], reason, remedy)
-        return equations
-
-    def worked_out(self, place: str, sides: Sequence[Side], rest: Sequence[Side]) -> list[str]:
-        """Return the equations of origins with the side beside them that is read."""
-        made: list[str] = []
-        for side, beside in zip(sides, (*sides[1:], sides[-2]), strict=True):
-            if rest and side not in rest:
-                made += self.origin(place, side, beside if beside in rest else rest[0])
-        return made
-
-    def is_unknown(self, place: str, side: Side) -> bool:
-        """Tell whether a side is made of functions that nobody gave."""
-        return self.is_origin(place, side, "claim") and self.given(place).worked_out(side.said) is None
-
-    def statements(self, place: str, text: str) -> tuple[Statement, ...]:
-        """Return the statements of a text."""
-        try:
-            return statements_of(text, self.scope)
-        except LanguageError as error:
-            raise self.fault(place, error) from None
-
-    def told(self, place: str, text: str, side: Side, reason: str, remedy: str) -> Exception:
-        """Return the error of one side of a text."""
-        return self.fault(place, LanguageError(text, side.column, reason, remedy))
-
 
 def _tables(value: Any) -> Any:
     """Return a list of tables; one alone is a list of one."""
     return [value] if isinstance(value, Mapping) else value
-
-
-def _no_equation(beside: Sequence[Side], unknown: Side | None) -> tuple[str, str]:
-    """Return what is wrong with ``d/dt(∂L/∂θ̇) = ∂L/∂θ`` or ``∂L/∂x = -k x`` as an equation of motion, and a remedy."""
-    if not beside:
-        return "this is Lagrange's equation itself, true of every system", "write out what it is for this one"
-    if unknown is not None:
-        shown = unknown.text.strip().strip("$").strip()[:40]
-        return f"what {shown} is made of is not given here", "write it out"
-    return (
-        "this says what a part of Lagrange's equation is, and is no equation of motion",
-        "write out what it is for this one",
-    )

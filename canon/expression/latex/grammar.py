@@ -282,7 +282,11 @@ class _Build(Transformer_NonRecursive[Token, Any]):
     def power(self, children: list[Any]) -> Powered:
         base, sign, exponent = children
         inner = exponent.inner if isinstance(exponent, Group) and exponent.braces else None
-        if isinstance(base, Name) and isinstance(inner, Group) and whole(self.meaning.node(inner)) is not None:
+        if (
+            isinstance(base, Name)
+            and isinstance(inner, Group)
+            and whole(self.meaning.node(inner)) is not None
+        ):
             reason = f"is this the derivative of {base.text}, or a power?"
             self.meaning.refuse(sign.column, reason, "write dots for rates, ^2 for a power")
         return self.meaning.raised(base, self.meaning.node(exponent))

@@ -1,0 +1,1 @@
+"""Equations of typed answers: several in one text, chains, products of matrices, vectors, numbers beside them."""

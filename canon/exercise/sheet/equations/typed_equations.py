@@ -1,0 +1,122 @@
+"""Typed equations: a list of them as people write it, numbers beside them, several in one text, chains taken apart.
+
+``d/dt(∂L/∂θ̇) - ∂L/∂θ = m l² θ̈ + m g l sin θ = 0`` says where its last equation comes from; alone, Lagrange's equation
+is true of every system, and no answer.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+from canon.exercise.sheet import field_texts
+from canon.exercise.sheet.equations.equation_numbers import without_numbers
+from canon.exercise.sheet.equations.matrix_products import equations_of_products
+from canon.exercise.sheet.equations.vector_equations import vector_equations
+from canon.exercise.sheet.left_sides import is_definition
+from canon.expression.parse import LanguageError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from canon.exercise.sheet.equations.sides import Sides
+    from canon.expression.text.statement import Side, Statement
+
+__all__ = ["typed_equations"]
+
+
+def typed_equations(place: str, value: Any, known: Sides) -> list[Any]:
+    """Return a list of equations, chains taken apart, each in a text of its own.
+
+    Parameters
+    ----------
+    place
+        Where they stand in the claim.
+    value
+        One text or a list of texts.
+    known
+        What is known of their sides.
+
+    Raises
+    ------
+    Exception
+        What ``known.fault`` makes, of a text that says nothing or can't be taken apart.
+    """
+    texts: list[Any] = _unnumbered(place, value if isinstance(value, list) else [value], known)
+    if len(texts) == 1 and isinstance(texts[0], str):
+        text = texts[0]
+        texts = vector_equations(text) or field_texts.equations_listed(text) or _products(place, text, known)
+    found: list[Any] = []
+    for i, text in enumerate(texts):
+        where = f"{place}[{i}]"
+        statements = known.statements(where, text) if isinstance(text, str) else ()
+        if not isinstance(text, str) or _is_plain(statements, known):
+            found.append(text)
+            continue
+        for statement in statements:
+            found += _chain(where, text, statement, known)
+    return found
+
+
+def _is_plain(statements: Sequence[Statement], known: Sides) -> bool:
+    """Tell whether a text is one equation of two sides, none of them a definition."""
+    if len(statements) != 1 or len(statements[0].sides) > 2:
+        return False
+    return not any(is_definition(side.said, "claim", known.scope) for side in statements[0].sides)
+
+
+def _products(place: str, text: str, known: Sides) -> list[str]:
+    """Return the equations of the components where the sides are sums and products of matrices."""
+    return equations_of_products(text, known.reads(place, text)) or [text]
+
+
+def _unnumbered(place: str, texts: list[Any], known: Sides) -> list[Any]:
+    """Return equations without the numbers before or behind them."""
+    if not all(type(text) is str for text in texts):
+        return texts
+    try:
+        return without_numbers(texts)
+    except LanguageError as error:
+        raise known.fault(f"{place}[{texts.index(error.text)}]", error) from None
+
+
+def _chain(place: str, text: str, statement: Statement, known: Sides) -> list[str]:
+    """Return the equations that a chain says, definitions in it passed over."""
+    sides = statement.sides
+    rest = [side for side in sides if not known.is_origin(place, side, "claim")]
+    if len(rest) == len(sides):
+        links = [field_texts.equation_between(a, b) for a, b in pairwise(sides)]
+        return links or [sides[0].text]
+    made = _worked_out(place, sides, rest, known)
+    said = [side for side in rest if side.said.strip("$0. ")]
+    if len(rest) == 1 and said and sides[0] not in rest and "-" in sides[0].said:
+        # d/dt(∂L/∂q̇) − ∂L/∂q is what stands there, and zero; or it equals the forces
+        return made or [said[0].text]
+    equations = [*made, *(field_texts.equation_between(a, b) for a, b in pairwise(rest))]
+    if not said or not equations:
+        unknown = next((side for side in sides if known.is_unknown(place, side)), None)
+        reason, remedy = _no_equation(said, unknown)
+        raise known.told(place, text, unknown or sides[0], reason, remedy)
+    return equations
+
+
+def _worked_out(place: str, sides: Sequence[Side], rest: Sequence[Side], known: Sides) -> list[str]:
+    """Return the equations of origins with the side beside them that is read."""
+    made: list[str] = []
+    for side, beside in zip(sides, (*sides[1:], sides[-2]), strict=True):
+        if rest and side not in rest:
+            made += known.origin(place, side, beside if beside in rest else rest[0])
+    return made
+
+
+def _no_equation(beside: Sequence[Side], unknown: Side | None) -> tuple[str, str]:
+    """Return what is wrong with ``d/dt(∂L/∂θ̇) = ∂L/∂θ`` or ``∂L/∂x = -k x`` as an equation of motion, and a remedy."""
+    if not beside:
+        return "this is Lagrange's equation itself, true of every system", "write out what it is for this one"
+    if unknown is not None:
+        shown = unknown.text.strip().strip("$").strip()[:40]
+        return f"what {shown} is made of is not given here", "write it out"
+    return (
+        "this says what a part of Lagrange's equation is, and is no equation of motion",
+        "write out what it is for this one",
+    )
