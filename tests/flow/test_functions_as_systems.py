@@ -105,8 +105,8 @@ REFUSED: dict[str, tuple[Callable[..., Any], str]] = {
     "a branch": (branching, "asks for the number or the sign"),
     "a table": (lambda t, y: [y[1], np.interp(y[0], [0, 1], [0, 1])], "asks for the number or the sign"),
     "an array of floats": (zeros_of_floats, r"numpy.zeros_like\(y\)"),
-    "odeint's order": (lambda y, t: [y[1], -y[0]], "can't be read as formulas"),
-    "further arguments": (lambda t, y, k: [y[1], -k * y[0]], "missing 1 required positional argument"),
+    "odeint's order": (lambda y, t: [y[1], -y[0]], "has the order of SciPy's odeint"),
+    "further arguments": (lambda t, y, k: [y[1], -k * y[0]], "put values of k in"),
     "another for numbers": (
         lambda t, y: [y[1], -y[0] if isinstance(y[0], float) else y[0]],
         r"at the start f\(t, y\) returns",
@@ -119,7 +119,8 @@ def test_what_is_no_formula_is_refused_with_what_to_write(what: str) -> None:
     f, told = REFUSED[what]
     with pytest.raises(TypeError, match=told) as caught:
         propagate(f, (0, 1), [1.0, 0.0])
-    assert "VectorField" in str(caught.value)
+    remedy = "lambda t, y: f(" if what in ("odeint's order", "further arguments") else "VectorField"
+    assert remedy in str(caught.value)
 
 
 COMPLEX: dict[str, tuple[Callable[..., Any], Any, str]] = {

@@ -31,6 +31,7 @@ from canon.exercise.sheet.left_sides import (
 from canon.exercise.sheet.quantities.abbreviations import without_abbreviations
 from canon.exercise.sheet.typed_values import signed_tables, values_under
 from canon.expression.parse import LanguageError, parse_expression
+from canon.expression.text.declared_names import key_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -282,6 +283,8 @@ class _Plain:
         """Refuse a left side that is the name of something else."""
         label = label_of(side.said)
         given = self.sides.given(place)
+        if self.is_slope_asked(place, side):
+            return
         if place.startswith("values.") and asked.shown in re.findall(r"[^\W\d_]+(?:_\w+)?", side.said):
             raise self.contradiction(place, text, side, asked)
         if is_of_another(side.said) and self.sides.is_origin(place, side, asked.shown):
@@ -293,6 +296,14 @@ class _Plain:
         worked_out = asked.shown == "I" and given.put_in(side.text) is not None
         if not worked_out and (label.name or asked.bracket):
             raise self.contradiction(place, text, side, asked)
+
+    def is_slope_asked(self, place: str, side: Side) -> bool:
+        """Tell whether a side is ``∂W/∂q`` for that component of a gradient."""
+        found = re.fullmatch(r"∂[WSF]_?\w{0,2}/∂(\S{1,20})", side.said)
+        index = re.fullmatch(r"gradient\[(\d+)\]", place)
+        q: Any = self.of.keys.get("q", [])
+        q = q if isinstance(q, list) else [q]
+        return bool(found and index and key_of(q[int(index[1])]) == key_of(found[1]))
 
     def contradiction(self, place: str, text: str, side: Side, asked: Quantity) -> Exception:
         """Return the error of a left side that is not what is asked."""

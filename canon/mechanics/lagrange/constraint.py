@@ -76,8 +76,8 @@ class ConstrainedLagrangian:
             object.__setattr__(self, name, constraints)
         v = [velocity(s) for s in lagrangian.q]
         for f in (*self.holonomic, *self.nonholonomic):
-            if not f.has(*lagrangian.q, *v):
-                said = "is true anyway" if f == 0 else "restricts nothing that moves"
+            if f.is_number:
+                said = "is true anyway" if f == 0 else "is never true"
                 raise ValueError(
                     f"the constraint {f} = 0 {said}; give a function of {lagrangian.q} that vanishes"
                 )

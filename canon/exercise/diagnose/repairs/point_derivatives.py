@@ -154,7 +154,7 @@ class Neighbourhood:
             if unknown not in memo:
                 example = self.examples[unknown]
                 if example.has(unknown):  # a derivative that SymPy leaves as it stands, as that of a jump
-                    raise Unmodelled(f"{unknown} has no value")
+                    raise Unmodelled(str(unknown))
                 memo[unknown] = self._value(example, along)
         return value(f, {}, memo)
 

@@ -78,7 +78,7 @@ def _in_bases(text: str, value: Expr, bases: dict[str, sp.Dummy]) -> tuple[str, 
     named = {base: name for name, base in bases.items()}
     if not all(unit in named or unit == 1 for unit in powers) or number.has(*bases.values()):
         raise LanguageError(text, 1, "quantities of different dimensions are added here", "write one unit")
-    if not all(sp.sympify(power).is_Integer for power in powers.values()):
+    if not all(sp.sympify(power, strict=True).is_Integer for power in powers.values()):
         raise LanguageError(text, 1, "this has a unit with a power that is not whole", "write the value")
     written = {named[base]: power for base, power in powers.items() if base != 1}
     unit = " ".join(f"{name}^{written[name]}".removesuffix("^1") for name in _BASE if name in written)
