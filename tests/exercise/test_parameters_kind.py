@@ -111,7 +111,7 @@ def test_a_value_that_assumptions_or_the_domain_exclude():
         ({"find": ["zeta"]}, "find"),
         ({"values": [{"gamma": "1"}]}, "values"),
         ({"values": [{"alpha": "q"}]}, "values"),
-        ({"values": {"alpha": "1"}}, "values"),
+        ({"values": "alpha = 1"}, "values"),
         ({"P": ["q", "p"]}, "P"),
         ({"wrong": "1"}, "wrong"),
     ],

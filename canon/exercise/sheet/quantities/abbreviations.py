@@ -54,7 +54,7 @@ def without_abbreviations(
     >>> x, (m, k) = coordinates("x"), parameters("m k")
     >>> scope = Scope({s.name: s for s in (x, m, k)})
     >>> without_abbreviations(["x'' + w^2 x = 0, w^2 = k/m"], scope, lambda label: False)
-    ['x_ddot + k*x/m = 0']
+    ['k*x/m + x_ddot = 0']
     """
     if any(is_latex(text) for text in texts) or sum(map(len, texts)) > _LONGEST:
         return None
