@@ -4,7 +4,7 @@ For each problem, contender and accuracy: the cheapest setting tried (steps a pe
 max |ΔE/E| at 3137 instants below it, and the processor time a period of a run that keeps the last state only: the
 median of runs that take turns. Of others it is the time of the call that integrates, on a problem that is set up and
 compiled. Of canon both are told: the loop alone, and the whole of a call on a motion that is prepared likewise
-(``canon.prepare``), which checks the start and measures the energy of what comes out. Others are installed into an
+(``canon.flow.prepare``), which checks the start and measures the energy of what comes out. Others are installed into an
 environment of their own; canon needs none of them::
 
     pip install rebound galpy pyhamsys diffrax numbalsoda    # the last needs a Fortran compiler
@@ -30,7 +30,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import sympy as sp
 
-from canon import SABA, Gauss, Splitting, Taylor, WisdomHolman, prepare
+from canon import SABA, Gauss, Splitting, Taylor, WisdomHolman
+from canon.flow import prepare
 from canon.scene import find
 
 if TYPE_CHECKING:

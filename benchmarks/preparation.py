@@ -12,7 +12,8 @@ import time
 from typing import TYPE_CHECKING, Any
 from unittest import mock
 
-from canon import Splitting, Taylor, WisdomHolman, prepare, propagate
+from canon import Splitting, Taylor, WisdomHolman, propagate
+from canon.flow import prepare
 from canon.flow.fixed_step import compiled_loop
 from canon.flow.run import observables_along
 from canon.kernel.llvm import kept_code, machine_code

@@ -17,7 +17,6 @@ from .flow.method.method import Splitting as Splitting
 from .flow.method.method import TimeTransformed as TimeTransformed
 from .flow.method.solvable_splitting import SABA as SABA
 from .flow.method.solvable_splitting import WisdomHolman as WisdomHolman
-from .flow.propagation import prepare as prepare
 from .flow.propagation import propagate as propagate
 from .flow.run.event import Event as Event
 from .flow.run.observables_along import AccuracyWarning as AccuracyWarning

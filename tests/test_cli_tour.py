@@ -2,7 +2,6 @@
 
 import re
 from pathlib import Path
-from time import process_time
 
 import pytest
 
@@ -15,16 +14,16 @@ VERDICT = re.compile(r"^[✓✗] (holds|fails)\s+(\S+)", re.MULTILINE)
 
 
 @pytest.fixture(scope="module")
-def tour(tmp_path_factory):
+def tour(tmp_path_factory, processor_seconds):
     import contextlib
     import io
 
     figure = tmp_path_factory.mktemp("tour") / "tour.png"
     printed = io.StringIO()
-    used = process_time()
+    used = processor_seconds()
     with contextlib.redirect_stdout(printed):
         status = main(["tour", "--plot", str(figure)])
-    return status, printed.getvalue(), figure, process_time() - used
+    return status, printed.getvalue(), figure, processor_seconds() - used
 
 
 def test_every_answer_is_judged_as_its_author_expects(tour):

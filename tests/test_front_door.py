@@ -16,7 +16,7 @@ def test_every_public_name_resolves():
 
 
 def test_the_front_door_keeps_what_people_type_first():
-    assert len(canon.__all__) <= 63
+    assert len(canon.__all__) <= 62
 
 
 ROOMS = ("mechanics", "flow", "study", "exercise", "expression", "proof")

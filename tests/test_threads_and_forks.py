@@ -43,10 +43,10 @@ def proved(answer):
     return not isinstance(answer, str) and answer[0].holds
 
 
-def test_threads_wait_for_one_another_no_longer_than_their_budgets():
+def test_threads_wait_for_one_another_no_longer_than_their_budgets(processor_seconds):
     assert proved(prove_in_worker([EASY], Domain(), 20.0))
     hard = endless()
-    spent = []
+    spent, used = [], processor_seconds()
 
     def ask():
         start = time.monotonic()
@@ -60,6 +60,7 @@ def test_threads_wait_for_one_another_no_longer_than_their_budgets():
         thread.join()
     assert len(spent) == 3
     assert max(spent) < 2 * min(spent)  # one after the other it would be three times as long
+    assert processor_seconds() - used < 3.0
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork on this system")
@@ -115,7 +116,7 @@ print(vanishes(sp.sin(x)**2 + sp.cos(x)**2 - 1).status.value, flush=True)
 
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="interrupts are sent as POSIX does")
-def test_an_interrupt_ends_a_proof_and_the_next_one_works(tmp_path):
+def test_an_interrupt_ends_a_proof_and_the_next_one_works(tmp_path, processor_seconds):
     source = Path(__file__).read_text(encoding="utf-8")
     body = source[source.index("def endless") : source.index("def in_a_child")]
     (tmp_path / "tests_endless.py").write_text(f"import sympy as sp\n\n\n{body}", encoding="utf-8")
@@ -126,8 +127,10 @@ def test_an_interrupt_ends_a_proof_and_the_next_one_works(tmp_path):
     )  # fmt: skip
     assert process.stdout.readline() == "ready\n"
     time.sleep(2.0)
+    used = processor_seconds()
     process.send_signal(signal.SIGINT)
     assert process.stdout.readline() == "interrupted\n"
+    assert processor_seconds() - used < 2.0
     assert process.stdout.readline() == "holds\n"
     process.stdout.close()
     assert process.wait(timeout=20) == 0

@@ -26,9 +26,10 @@ from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict, all
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+__all__ = ["Finding", "InvalidClaim", "examine", "examined", "judge", "questions"]
+
 _ONE_VALUE = ("energy_rate", "T", "values", "force")
 """Keys whose answers are values, equal on the motion or on the constraints if both are right."""
-__all__ = ["Finding", "InvalidClaim", "examine", "examined", "judge", "questions"]
 
 
 @dataclass(frozen=True)

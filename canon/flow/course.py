@@ -116,8 +116,9 @@ def _rates_at_start(
     # Numbers are quicker than arrays of one number.
     point = whole[:, 0] if whole.shape[1] == 1 else whole
     values = dict(zip(system.inputs, (*point, point.dtype.type(float(start))), strict=True))
+    nodes = (system.hamiltonian, *system.velocity, *system.force)
     try:
-        found = system.graph.evaluate(system.field, values, FLOAT64 if narrow else LONGDOUBLE)
+        found = system.graph.evaluate(nodes, values, FLOAT64 if narrow else LONGDOUBLE)
     except OverflowError as large:
         raise ValueError(
             "a constant or a parameter of H is beyond 1e308: choose other units; exponents with floats, which SymPy "

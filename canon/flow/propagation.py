@@ -206,7 +206,7 @@ def propagated(request: Request, progress: Callable[[float], None] | bool | None
 
 @dataclass(frozen=True, eq=False)
 class PreparedMotion:
-    """A motion without its start, made by :func:`canon.prepare`.
+    """A motion without its start, made by :func:`canon.flow.prepare`.
 
     Parameters
     ----------
@@ -239,7 +239,7 @@ class PreparedMotion:
 
         Examples
         --------
-        >>> from canon import prepare
+        >>> from canon.flow import prepare
         >>> prepare("kepler", (0, 10), samples=2).propagate([1.0, 0.0, 0.0]).final
         Traceback (most recent call last):
             ...
@@ -298,7 +298,8 @@ def prepare(
 
     Examples
     --------
-    >>> from canon import Splitting, prepare, propagate
+    >>> from canon import Splitting, propagate
+    >>> from canon.flow import prepare
     >>> by = {"method": Splitting("kahan-li-8"), "step": 0.1, "samples": 10}
     >>> prepared = prepare("simple-pendulum", (0, 100), **by)
     >>> motions = [prepared.propagate([angle, 0.0]) for angle in (0.5, 1.0, 1.5)]

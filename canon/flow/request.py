@@ -49,7 +49,7 @@ def refuse_unknown(unknown: Mapping[str, object], function: str = "propagate") -
     unknown
         The arguments.
     function
-        Which function was called; :func:`canon.prepare` has the same arguments but the start.
+        Which function was called; :func:`canon.flow.prepare` has the same arguments but the start.
 
     Raises
     ------

@@ -28,10 +28,9 @@ from canon import (
     WisdomHolman,
     coordinates,
     parameters,
-    prepare,
     propagate,
 )
-from canon.flow import propagation
+from canon.flow import prepare, propagation
 
 X = coordinates("x")
 G = parameters("g", positive=True)

@@ -10,8 +10,9 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 from itertools import chain
-from types import CodeType, FunctionType
 from typing import TYPE_CHECKING, Any
+
+from canon.expression.graph.written_steps import function_of_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -144,9 +145,7 @@ def _raised(base: float, exponent: Fraction | float) -> float:
 def _compiled(
     graph: Graph, outputs: Sequence[int], inputs: Sequence[Symbol]
 ) -> Callable[[Sequence[float]], tuple[float, ...]]:
-    module = compile(_text(graph, outputs, inputs), "<expression graph>", "exec")
-    code = next(constant for constant in module.co_consts if isinstance(constant, CodeType))
-    return FunctionType(code, _FUNCTIONS)
+    return function_of_text(_text(graph, outputs, inputs), _FUNCTIONS)
 
 
 def _text(graph: Graph, outputs: Sequence[int], inputs: Sequence[Symbol]) -> str:

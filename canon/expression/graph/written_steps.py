@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     Step: TypeAlias = tuple[Callable[..., Any] | None, tuple[int, ...], Any]
     """A function, the places of its operands among what was done before, and the value of a constant or a symbol."""
 
-__all__ = ["squared", "value_of", "written_steps"]
+__all__ = ["function_of_text", "squared", "value_of", "written_steps"]
 
 _AT_ONCE = 40
 """So many terms stand in one line: Python's compiler nests them."""
@@ -79,9 +79,20 @@ def written_steps(
             known[f"f{k}"] = function
             lines.append(f" v{k} = f{k}({','.join(f'v{o}' for o in operands)})")
     lines.append(f" return [{','.join(f'v{place}' for place in places)}]")
-    module = compile("\n".join(lines), "<steps of an evaluation>", "exec")
+    return function_of_text("\n".join(lines), known)
+
+
+def function_of_text(text: str, names: dict[str, Any]) -> FunctionType:
+    r"""Return the function that a text defines, of numbered names and those given: nothing a user wrote is in it.
+
+    Examples
+    --------
+    >>> function_of_text("def f(x):\n return n0*x", {"n0": 3.0})(2.0)
+    6.0
+    """
+    module = compile(text, "<expression graph>", "exec")
     code = next(constant for constant in module.co_consts if isinstance(constant, CodeType))
-    return FunctionType(code, known)
+    return FunctionType(code, names)
 
 
 _SIGNS: dict[Callable[..., Any], str] = {operator.add: "+", operator.mul: "*"}

@@ -24,7 +24,7 @@ from canon.expression.latex.pieces import (
 )
 from canon.expression.latex.understood_time import is_time
 from canon.expression.symbols.symbol import Coordinate, Momentum, Rate
-from canon.expression.text.open_readings import counts, is_angle
+from canon.expression.text.open_readings import counts, is_angle, stem_of
 from canon.expression.text.syntax import Name, Node
 
 if TYPE_CHECKING:
@@ -98,7 +98,7 @@ class ArgumentEnd:
     def is_angle(self, node: Node) -> bool:
         """Whether every name in a factor is that of an angle."""
         names = [name.text for name in names_in(node) if name.text != "pi"]
-        return bool(names) and all(name.partition("_")[0].rstrip("0123456789") in _ANGLES for name in names)
+        return bool(names) and all(stem_of(name) in _ANGLES for name in names)
 
     def lies_before(self, taken: list[Node], item: Piece) -> bool:
         """Whether an argument is complete before a factor that no argument would go on with."""
@@ -146,7 +146,7 @@ class ArgumentEnd:
     def is_number_of_waves(self, node: Node) -> bool:
         """Whether a factor is what people multiply an argument by: a number, k, n, ω."""
         names = [name.text for name in names_in(node) if name.text != "pi"]
-        return all(name.partition("_")[0].rstrip("0123456789") in _WAVES for name in names)
+        return all(stem_of(name) in _WAVES for name in names)
 
     def _moves(self, name: str) -> bool:
         symbol = self.scope.symbol(name)

@@ -12,7 +12,7 @@ from canon.expression.text.syntax import Name, Node, parts
 if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
 
-__all__ = ["DECLARED_E", "counts", "is_angle", "looks_like_eulers"]
+__all__ = ["DECLARED_E", "counts", "is_angle", "looks_like_eulers", "stem_of"]
 
 _ANGLES = ("theta", "vartheta", "phi", "varphi", "psi", "th", "ph")
 """Letters that are angles in any book."""
@@ -33,12 +33,12 @@ def is_angle(name: str) -> bool:
     >>> is_angle("theta_0"), is_angle("phi1"), is_angle("x")
     (True, True, False)
     """
-    return _stem(name) in _ANGLES
+    return stem_of(name) in _ANGLES
 
 
 def counts(name: str) -> bool:
     """Tell whether a name is that of a whole number."""
-    return _stem(name) in _COUNTS
+    return stem_of(name) in _COUNTS
 
 
 def looks_like_eulers(base: Node, exponent: Node, scope: Scope) -> bool:
@@ -58,5 +58,12 @@ def looks_like_eulers(base: Node, exponent: Node, scope: Scope) -> bool:
     return imaginary or any(name.primes or scope.moves(name.text) for name in names)
 
 
-def _stem(name: str) -> str:
+def stem_of(name: str) -> str:
+    """Return the letter of a name without its number or subscript.
+
+    Examples
+    --------
+    >>> stem_of("theta_0"), stem_of("phi1"), stem_of("k_x")
+    ('theta', 'phi', 'k')
+    """
     return name.partition("_")[0].rstrip("0123456789")

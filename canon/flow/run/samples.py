@@ -84,10 +84,7 @@ class Samples:
 
     def of_one(self) -> Samples:
         """Return the samples of the first orbit, without the axis of the orbits."""
-        return Samples(
-            self.t, self.y[:, :, 0], self.carried[:, :, 0], self.steps, self.evaluations, self.step, self.cpu_seconds,
-            self.compile_seconds, self.watched, self.beyond, self.crossings, self.dense, self.each,
-        )  # fmt: skip
+        return replace(self, y=self.y[:, :, 0], carried=self.carried[:, :, 0])
 
 
 def side_by_side(each: Sequence[Samples]) -> Samples:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from dataclasses import field as dataclass_field
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -86,7 +85,7 @@ class HamiltonEquations:
     canonical: bool = True
     spare: int = 0
     kicked: bool = False
-    named: Mapping[Symbol, int] = dataclass_field(default_factory=lambda: FrozenMapping({}))
+    named: Mapping[Symbol, int] = field(default_factory=lambda: FrozenMapping({}))
     holonomic: HolonomicSystem | None = None
     lie_poisson: LiePoissonParts | None = None
     variations: int = 0
@@ -101,11 +100,6 @@ class HamiltonEquations:
     def inputs(self) -> tuple[Symbol, ...]:
         """The arguments of every program of these equations: q, p and t."""
         return (*self.q, *self.p, self.t)
-
-    @cached_property
-    def field(self) -> tuple[int, ...]:
-        """The nodes of H, and of the velocities and forces as they were derived."""
-        return (self.hamiltonian, *self.velocity, *self.force)
 
     @cached_property
     def rates(self) -> tuple[int, ...]:

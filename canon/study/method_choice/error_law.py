@@ -96,7 +96,7 @@ def _position(pilot: Pilot, span: float) -> float:
     symplectic = pilot.setting.method.is_symplectic
     if whole > SATURATED:
         return float(whole * span / pilot.span) if symplectic else math.inf
-    from scipy.optimize import nnls  # takes a third of a second to import
+    from scipy.optimize import nnls  # long to import, and most choices end before
 
     powers = np.array([0.5, 1.0] if symplectic else [0.5, 1.0, 2.0])
     design = t[:, None] ** powers

@@ -43,7 +43,7 @@ magnitude below the time scale of the motion."""
 
 LEAST_SECONDS, LONGEST_STEP = 5e-5, 16.0
 """What a step taken in Python costs at least, and how many of Taylor's steps to round-off are no longer than a step of
-a Runge–Kutta method may be before it loses the motion; both on the safe side, as measured."""
+a Runge–Kutta method may be before it loses the motion; both on the safe side (tests/study/test_choose.py)."""
 
 SAME = 1.02
 """Ratio of steps that are taken for one: their costs differ by less than timings do."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from canon.exercise.sheet.quantities.measures import Measure, measure_of
+from canon.exercise.sheet.quantities.measures import BASE_UNITS, UNIT, Measure, measure_of
 from canon.expression.parse import parse_expression
 from canon.expression.text.notation import is_latex
 from canon.expression.text.tokens import LanguageError
@@ -25,14 +25,11 @@ if TYPE_CHECKING:
 
 __all__ = ["calculated"]
 
-_BASE = ("m", "kg", "s", "A", "K", "mol")
-_POWER = r"(?:(?:\^|\*\*)[({]?[-−]?[0-9]{1,2}[)}]?|[⁻¹²³⁴]{1,3})?"
-_UNIT = rf"(?:[A-Za-zµμΩ]+|°|%){_POWER}"
 _QUANTITY = re.compile(
     rf"(?<![\w.])(?P<number>[0-9]+(?:\.[0-9]*)?(?:[eE][+-]?[0-9]+)?)\s?"
-    rf"(?:(?P<unit>{_UNIT}(?:(?:\s?[*·⋅/]\s?|\s){_UNIT}){{0,4}})|\[(?P<bracket>[^\[\]]{{1,40}})\])(?![\w(])"
+    rf"(?:(?P<unit>{UNIT}(?:(?:\s?[*·⋅/]\s?|\s){UNIT}){{0,4}})|\[(?P<bracket>[^\[\]]{{1,40}})\])(?![\w(])"
 )
-_LAST = re.compile(rf"(?:\s?[*·⋅/]\s?|\s){_UNIT}$")
+_LAST = re.compile(rf"(?:\s?[*·⋅/]\s?|\s){UNIT}$")
 _MOST = 20
 """Quantities in one calculation."""
 
@@ -57,7 +54,7 @@ def calculated(text: str, scope: Scope) -> tuple[str, str] | None:
     inside = [end for _, end, _, _ in quantities if text[end:].strip(" $.,;")]
     if not inside or len(quantities) > _MOST:
         return None
-    bases = {name: sp.Dummy(name, positive=True) for name in _BASE}
+    bases = {name: sp.Dummy(name, positive=True) for name in BASE_UNITS}
     names, pieces, at = dict[str, sp.Dummy](), list[str](), 0
     put: dict[sp.Dummy, Expr] = {}
     for i, (start, end, number, measure) in enumerate(quantities):
@@ -81,7 +78,7 @@ def _in_bases(text: str, value: Expr, bases: dict[str, sp.Dummy]) -> tuple[str, 
     if not all(sp.sympify(power, strict=True).is_Integer for power in powers.values()):
         raise LanguageError(text, 1, "this has a unit with a power that is not whole", "write the value")
     written = {named[base]: power for base, power in powers.items() if base != 1}
-    unit = " ".join(f"{name}^{written[name]}".removesuffix("^1") for name in _BASE if name in written)
+    unit = " ".join(f"{name}^{written[name]}".removesuffix("^1") for name in BASE_UNITS if name in written)
     return str(number), unit or "1"
 
 

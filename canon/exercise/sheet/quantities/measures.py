@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
     from canon.expression.text.scope import Scope
 
-__all__ = ["Measure", "measure_like", "measure_of", "unit_behind"]
+__all__ = ["BASE_UNITS", "UNIT", "Measure", "measure_like", "measure_of", "unit_behind"]
 
 _PREFIXES = {"": 0, "T": 12, "G": 9, "M": 6, "k": 3, "h": 2, "d": -1, "c": -2, "m": -3, "µ": -6, "μ": -6, "u": -6,
              "n": -9, "p": -12}  # fmt: skip
-_BASE = ("m", "kg", "s", "A", "K", "mol")
+BASE_UNITS = ("m", "kg", "s", "A", "K", "mol")
 _SCALED: Mapping[str, tuple[Expr, tuple[int, ...]]] = {
     "m": (sp.S.One, (1,)), "g": (Rational(1, 1000), (0, 1)), "s": (sp.S.One, (0, 0, 1)),
     "A": (sp.S.One, (0, 0, 0, 1)), "K": (sp.S.One, (0, 0, 0, 0, 1)), "mol": (sp.S.One, (0, 0, 0, 0, 0, 1)),
@@ -72,14 +72,14 @@ _MACROS: Mapping[str, str] = {
 _LATEX = re.compile(
     r"\\(?:mathrm|text|textrm|rm|si|unit|operatorname|,|;|:|!| )|\\(?=%)|[{}$~]|\\[lr]?(?:brack)?(?![A-Za-z])"
 )
-_UNIT = r"(?:[A-Za-zµμΩ]+|°|%)(?:(?:\^|\*\*)?[({]?[-−]?[0-9]{1,2}[)}]?|[⁻¹²³⁴]{1,3})?"
+UNIT = r"(?:[A-Za-zµμΩ]+|°|%)(?:(?:\^|\*\*)?[({]?[-−]?[0-9]{1,2}[)}]?|[⁻¹²³⁴]{1,3})?"
 _BEHIND = re.compile(
-    rf"(?<=[0-9.)\s°%}}])(?P<unit>\(?{_UNIT}\)?(?:\s?[*·⋅/]\s?\(?{_UNIT}\)?|\s\(?{_UNIT}\)?){{0,5}}|1?/{_UNIT})\s*$"
+    rf"(?<=[0-9.)\s°%}}])(?P<unit>\(?{UNIT}\)?(?:\s?[*·⋅/]\s?\(?{UNIT}\)?|\s\(?{UNIT}\)?){{0,5}}|1?/{UNIT})\s*$"
 )
 _IN_BRACKET = re.compile(r"\[(?P<unit>[^\[\]]{1,80})\]\s*$")
 _SPACED = re.compile(
     r"(?:\\[,;:! ]|~|\{?\s*\\rm(?![A-Za-z])\s*\{?\s*){1,5}"
-    rf"(?P<unit>{_UNIT}(?:(?:\s|\\[,;:! ]|~|\\cdot|/){{1,3}}{_UNIT}){{0,4}})\s*\}}?\s*\$?\s*$"
+    rf"(?P<unit>{UNIT}(?:(?:\s|\\[,;:! ]|~|\\cdot|/){{1,3}}{UNIT}){{0,4}})\s*\}}?\s*\$?\s*$"
 )
 _UPRIGHT = re.compile(
     r"(?P<unit>(?:\\(?:mathrm|text|textrm|si|unit)\s?\{[^{}]{0,40}(?:\{[^{}]{0,5}\}[^{}]{0,20}){0,4}\}"
@@ -137,7 +137,7 @@ def measure_of(unit: str) -> Measure | None:
     if written is None:
         return None
     named = [part for name, power in written for part in _apart(name, power)]
-    factor, powers = sp.S.One, [0] * len(_BASE)
+    factor, powers = sp.S.One, [0] * len(BASE_UNITS)
     for name, power in named:
         one = _one(name)
         if one is None:
