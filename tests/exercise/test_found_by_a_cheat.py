@@ -243,10 +243,10 @@ def test_what_moves_depends_on_the_time_alone() -> None:
     assert judged(**pendulum, claim=["∂²θ/∂t² = w² sin θ"]).status == "fails"
 
 
-def test_a_repair_of_a_jump_in_time_is_looked_for_without_end() -> None:
+def test_the_search_for_a_repair_of_a_jump_in_time_ends() -> None:
     asked = {
         "kind": "solution", "q": ["x"], "equations": ["x_ddot + w**2*x = 0"], "parameters": {"w": P, "a": "real"},
         "initial": {"x": "a", "x_dot": "0"},
     }  # fmt: skip
-    assert judged(**asked, solution={"x": "a*cos(w*t)*sign(t)**2"}).status in ("holds", "fails", "undecided")
+    assert judged(**asked, solution={"x": "a*cos(w*t)*sign(t)**2"}).status == "fails"  # it was a RecursionError
     assert judged(**asked, solution={"x": "a*cos(w*t)"}).status == "holds"
