@@ -229,6 +229,7 @@ MEANINGS = {
     r"\[Theta]''[t] == -(g/l) Sin[\[Theta][t]]": "theta_ddot + g*sin(theta)/l",
     "Eq(a, b)": "a - b",
     "-g/l sin θ": "-g*sin(theta)/l",
+    "-k/m x": "-k*x/m",
     "g sin θ/l": "g*sin(theta)/l",
     "cos φ/r²": "cos(phi)/r**2",
     "V'(r - a)": "",

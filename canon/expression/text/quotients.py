@@ -1,9 +1,10 @@
 """Quotients with a slash: where they end, as far as that is beyond doubt.
 
-``1/2 m`` is half of m, and ``g/l sin θ`` has g/l as a factor: numbers, or parameters before a function, without blanks.
+``1/2 m`` is half of m, ``g/l sin θ`` and ``k/m x`` have g/l and k/m as factors: numbers, or parameters before a
+function or before what moves, written without blanks and with one behind.
 After a bracket the quotient ends, ``1/(2m) x``, and before one behind a blank, ``m/2 (a + b)``. A momentum over a
 number and a word is over all of it: ``p²/2m`` is p²/(2m). Everything else is refused with both readings:
-``x/2m``, ``k/m x``.
+``x/2m``, ``k/mx``, ``k/m a``.
 """
 
 from __future__ import annotations
@@ -75,7 +76,8 @@ def ended(reader: FactorParser, factors: list[tuple[bool, Node]], starts: list[i
     plain = isinstance(over, Number) and isinstance(factors[-1][1], Number)
     half = isinstance(factors[-1][1], Number) and _steady(reader, over) and reader.token.text == "("
     plain = plain or half
-    steady = is_function(reader) and all(_steady(reader, _signless(node)) for _, node in factors)
+    goes_on = is_function(reader) or (reader.token.kind == "name" and reader.scope.moves(reader.token.text))
+    steady = goes_on and all(_steady(reader, _signless(node)) for _, node in factors)
     if bracketed or (tight and (plain or steady)):
         return
     shown = reader.text[piece[0].column - 1 : reader.token.column - 1].strip()
