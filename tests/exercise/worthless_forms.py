@@ -61,6 +61,8 @@ class Form:
         shown = _put(self.latex, f"({right.latex})", f"({latex})", f"{{{u[1]}}}", f"{{{v[1]}}}")
         if right.frame[0] != "{}":
             said, shown = right.frame[0].format(f"({said})"), right.frame[1].format(f"({shown})")
+        if "e" in right.keys.get("small", ()):  # then e^q is asked about
+            shown = shown.replace("e^", r"\exp")
         return said, f"${shown}$" if self.latex else ""
 
 
