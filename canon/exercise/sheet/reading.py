@@ -179,9 +179,21 @@ class Reading:
             if name in names:
                 self.fault("functions", f"{name} is declared as a symbol too")
         signs = {name: self._assumptions(name) for name in functions}
+        for name, symbol in self._conjugates(names):
+            if name not in functions:
+                names.setdefault(name, symbol)
         implicit = keys.get("implicit_multiplication") is True
         moving = frozenset(name for key in _MOVING if self.is_names(key) for name in _as_list(keys[key]))
         return Scope({**self.names, **names}, functions, self.time, signs, implicit, moving)
+
+    def _conjugates(self, names: Mapping[str, Symbol]) -> Iterator[tuple[str, Symbol]]:
+        """Yield the momenta by the names of their coordinates, ``p_theta`` for p; of a single one the plain letter."""
+        if not (self.is_names("q") and self.is_names("p")):
+            return
+        pairs = list(zip(self.words("q"), self.words("p"), strict=False))
+        yield from ((f"p_{q}", names[p]) for q, p in pairs if p != f"p{q}")  # which is read as p_q already
+        if len(pairs) == 1 and pairs[0][1].startswith("p"):
+            yield "p", names[pairs[0][1]]
 
     def _variables(self) -> dict[str, Symbol]:
         """Return the symbols of the names that stand under keys of their own, each declared once."""
