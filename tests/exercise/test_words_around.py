@@ -31,12 +31,29 @@ ROLLING = {"kind": "constraint-class", "q": ["x", "y", "z"], "constraints": ["x_
     "said",
     [
         "We get {}", "therefore {}", "Thus, {}", "Hence: {}", "So {}", "it follows that {}", "so we find {}", "=> {}",
-        "⇒ {}", "∴ {}", "• {}", "{} ✓", "{}. ∎", "{}  q.e.d.", "therefore => {}",
+        "⇒ {}", "∴ {}", "• {}", "{} ✓", "{}. ∎", "{}  q.e.d.", "therefore => {}", "1) {}", "a) {}", "ii) {}", "* {}",
+        "eq. (3): {}", "Equation 2: {}", "E-L: {}", "Euler-Lagrange: {}", "Newton's equation: {}", "{} \\checkmark",
     ],
 )  # fmt: skip
 def test_words_that_say_nothing_are_passed_over(said: str) -> None:
     assert judged(**PENDULUM, claim=[said.format("θ'' + g/l sin θ = 0")]).status == "holds"
     assert judged(**PENDULUM, claim=[said.format("θ'' - g/l sin θ = 0")]).status == "fails"
+
+
+@pytest.mark.parametrize("said", ["no) {}", "not: {}", "wrong: {}", "k) {}", "* * {}", "3: {}"])
+def test_words_that_may_say_something_are_not(said: str) -> None:
+    assert judged(**PENDULUM, claim=[said.format("θ'' + g/l sin θ = 0")]).status == "invalid"
+
+
+@pytest.mark.parametrize(
+    "typed",
+    ["d2θ/dt2 {} g/l sin θ = 0", "d2theta/dt2 {} g/l*sin(theta) = 0",
+     r"\frac{{\partial^2\theta}}{{\partial t^2}} {} \frac gl\sin\theta = 0",
+     r"\partial_t^2\theta {} \frac gl\sin\theta = 0", "θ'' {} g/l sin θ ≡ 0", "θ'' {} w² sin θ = 0 with w² = g/l"],
+)  # fmt: skip
+def test_other_ways_to_write_an_equation(typed: str) -> None:
+    assert judged(**PENDULUM, claim=[typed.format("+")]).status == "holds"
+    assert judged(**PENDULUM, claim=[typed.format("-")]).status == "fails"
 
 
 def test_words_before_dollars() -> None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NoReturn
 
 from canon.expression.latex.pieces import Operator, Piece, Powered, items_of, mark_of, whole
-from canon.expression.symbols.symbol import Rate
+from canon.expression.symbols.symbol import Coordinate, Rate
 from canon.expression.text.syntax import Call, LanguageError, Name, Node, Number, Tuple
 
 if TYPE_CHECKING:
@@ -86,7 +86,8 @@ class Derivatives:
                 operand.text, tuple(Name(name, 0, operand.column) for name in names), operand.column
             )
         if isinstance(operand, Name):
-            return self._rate(operator, operand, of_time=of_time)
+            rate = self._is_rate(operator, operand)
+            return self._rate(operator, operand, of_time=of_time or rate)
         arguments = self._arguments(operand)
         if of_time and not (
             len(arguments) == 1 and isinstance(arguments[0], Name) and arguments[0].text == time
@@ -95,6 +96,11 @@ class Derivatives:
         if operator.total and len(arguments) > 1:
             self._refuse(operator.column, "the function has more than one argument", r"write \partial")
         return derivative(operand, operator.variables, operator.column)
+
+    def _is_rate(self, operator: Operator, operand: Name) -> bool:
+        r"""Tell whether ``\partial^2\theta/\partial t^2`` is meant for the acceleration: θ depends on t alone."""
+        moves = isinstance(self.scope.symbol(operand.text), Coordinate)
+        return moves and self.along_the_motion(operator) is not None
 
     def _arguments(self, operand: Node) -> tuple[Node, ...]:
         """Return the arguments of a declared function, none for any other operand."""

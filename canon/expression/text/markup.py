@@ -34,16 +34,20 @@ _DRAWN = re.compile(
 _PROMPT = re.compile(
     r"^\s*(?:\(%[io]\d{1,5}\)|%[io]\d{1,5}\s?[=:]|ans\s?=|(?:In|Out)\s?\[\d{1,5}\](?::=|=|:)|>>>)(?=\s)"
     r"|(?:(?<==)|^)\s*@\([\w, ]{1,60}\)"
-    r"|^\s*(?:EOM|EoM|Answer|Solution|Result|Equation of motion|Hamiltonian|Lagrangian):(?=\s)"
+    r"|^\s*(?:EOM|EoM|Answer|Solution|Result|Hamiltonian|Lagrangian|E-?L|Euler[-–]Lagrange|[Ee]q(?:n|uation)?s?\.?"
+    r"|Equations? of motion|(?:Newton|Lagrange|Hamilton)(?:['’]s)?(?: equations?)?)(?: ?\(\d{1,2}\)| \d{1,2})?:(?=\s)"
+    r"|^\s*(?:(?:\d{1,2}|[a-h]|i{1,3})\)|\*)[ \t]{1,9}(?=\S)"
 )
-"""What programs write before a line."""
+"""What programs and people write before a line: prompts, names of what follows, numbers and points of a list."""
 _SAID_BEFORE = re.compile(
     r"^\s*(?:(?:(?:so|thus|hence|therefore|finally|then|(?:and |so )?we (?:get|find|have|obtain)|this gives"
     r"|it follows that)"
     r"\s?[,:]?\s{1,9}(?=[^\s+*/=<>^)\],-]|=>))|(?:=>|⇒|⟹|∴|→|•|▪)\s{0,9}(?=\S)){1,9}",
     re.IGNORECASE,
 )
-_SAID_BEHIND = re.compile(r"[\s.,;]{0,9}(?:✓|✔|∎|□|■|\bQED\b|q\.\s?e\.\s?d\.?)[\s.]*$")
+_SAID_BEHIND = re.compile(
+    r"[\s.,;]{0,9}(?:✓|✔|∎|□|■|\\(?:checkmark|qed|blacksquare)\b|\bQED\b|q\.\s?e\.\s?d\.?)[\s.]*$"
+)
 """Words and signs around a formula that say nothing of it."""
 _APART_ACCENT = re.compile(r"(?<=[^\W\d]) ([\u0307\u0308])")
 """A dot that Word's linear format sets apart from its letter."""
@@ -55,6 +59,8 @@ _WIDTHLESS = re.compile(r"[\u200b\u2060\ufeff]")
 _ASSIGNED = re.compile(r"^(\s*[A-Za-z]\w{0,9}\s*):(?![:=])(?=[^;]*;\s*$)")
 """Maxima's ``L: …;``."""
 _PRIMED = re.compile(r"Derivative\[([1-4])\]\[((?:\\\[[A-Z][A-Za-z]{1,20}\]|\w){1,40})\](?=\[)")
+_TWICE = re.compile(r"(?<!\w)d([2-4])([^\W\d_]\w{0,15})/dt\1(?!\w)")
+"""``d2x/dt2``, without a sign of the power."""
 _FENCE = re.compile(r"^\s*```[a-z]{0,12}\n(.*?)\n?```\s*$", re.DOTALL)
 
 
@@ -82,7 +88,8 @@ def unmarked(text: str) -> str:
         text = text.replace("│", "|").replace("ℯ", "%e")
     text = _EMPHASISED.sub(r"\1\2\3", text)
     if "\\" not in text:
-        text = _ELEMENTWISE.sub(r"\1", text)
+        text = _ELEMENTWISE.sub(r"\1", text).replace("≡", "=")
+    text = _TWICE.sub(r"d^\1\2/dt^\1", text)
     if "Derivative[" in text:
         text = _PRIMED.sub(_with_primes, text)
     if drawn := _DRAWN.search(text) or _rows_of_a_drawing(text):

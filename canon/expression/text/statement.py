@@ -49,7 +49,7 @@ class Statement:
 
 _OPEN, _CLOSE = "([{⟨", ")]}⟩"
 _EQUALS = re.compile(r"(?<![<>!:=≠])(?:==|:=|=|≡|≔)(?![=>])")
-_ENDS = re.compile(r"[;\n]|⇒|⟹|∴|=>|(?<=\s)(?:and|where)(?=\s)")
+_ENDS = re.compile(r"[;\n]|⇒|⟹|∴|=>|(?<=\s)(?:and|where|with)(?=\s)")
 MAX_SIDES = 100
 """Most sides in one field."""
 
@@ -57,7 +57,8 @@ MAX_SIDES = 100
 def plain_statements(text: str) -> tuple[Statement, ...]:
     """Return the statements of a text that is no LaTeX.
 
-    They are parted by ``;``, new lines, ``and``, ``where``, ``⇒``, and commas between equations, not inside brackets.
+    They are parted by ``;``, new lines, ``and``, ``where``, ``with``, ``⇒``, and commas between equations,
+    not inside brackets.
 
     Raises
     ------
