@@ -502,7 +502,7 @@ FAULTS = [
     (r"$\frac{d^2V}{dx}", 2, "neither a quotient"),
     (r"$\frac{x}{dx}", 2, "neither a quotient"),
     (r"$\frac{dm}{dx}", 9, "symbol of its own"),
-    (r"$\frac{\partial x}{\partial t}", 17, "symbol of its own"),
+    (r"$\frac{\partial m}{\partial t}", 17, "symbol of its own"),
     (r"$\partial x", 2, "not complete"),
     (r"$dy", 2, "d is not declared"),
     (r"$V'(a,b)", 2, "with respect to what"),

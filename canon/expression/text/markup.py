@@ -36,7 +36,7 @@ _PROMPT = re.compile(
     r"|(?:(?<==)|^)\s*@\([\w, ]{1,60}\)"
     r"|^\s*(?:EOM|EoM|Answer|Solution|Result|Hamiltonian|Lagrangian|E-?L|Euler[-–]Lagrange|[Ee]q(?:n|uation)?s?\.?"
     r"|Equations? of motion|(?:Newton|Lagrange|Hamilton)(?:['’]s)?(?: equations?)?)(?: ?\(\d{1,2}\)| \d{1,2})?:(?=\s)"
-    r"|^\s*(?:(?:\d{1,2}|[a-h]|i{1,3})\)|\*)[ \t]{1,9}(?=\S)"
+    r"|^\s*(?:(?:\d{1,2}|[a-h]|i{1,3})\))[ \t]{1,9}(?=\S)|^\s*\*[ \t]{1,9}(?=\S[^\n]{0,400}=)"
 )
 """What programs and people write before a line: prompts, names of what follows, numbers and points of a list."""
 _SAID_BEFORE = re.compile(
