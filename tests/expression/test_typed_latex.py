@@ -236,7 +236,7 @@ MEANINGS = {
     "V''(2x)": "",
 }
 """What the page's table of plain text shows, and what it is; empty where the meaning has no plain spelling."""
-OTHER_ROWS = ("abbreviations", "around", "left sides", "chains", "several")
+OTHER_ROWS = ("other names", "abbreviations", "around", "left sides", "chains", "several")
 """Rows about whole answers, which are tested with questions."""
 
 

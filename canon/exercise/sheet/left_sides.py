@@ -35,14 +35,14 @@ OTHER_SPELLINGS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         "F": ("f", "S", "W", "G", "Lambda"),
         "L1": ("L_1",),
-        "L2": ("L_2", "L'"),
+        "L2": ("L_2", "L", "L'"),
         "I": ("I", "C"),
         "H": ("H_total", "H_tot", "H_system", "H_sys", "H_ges"),
         "L": ("L_total", "L_tot", "L_system", "L_sys", "L_ges"),
         "W": ("W_1", "chi"),
         "T": ("K", "E_kin", "T_kin", "E_k", "T_total", "T_tot"),
         "dof": ("f", "n", "N", "s", "DOF"),
-        "K": ("K_1", "H'", "H_av", "H_new"),
+        "K": ("K_1", "H", "H'", "H_av", "H_new"),
         "energy_rate": (),
         "rhs": (),
         "lhs": (),
@@ -59,6 +59,8 @@ _LETTERS = {
     "Q": ("Q",), "P": ("P",), "force": ("Q",), "Qnc": ("Q",), "J": ("J", "I"), "omega": ("omega", "Omega"),
 }  # fmt: skip
 """Letters that components are called by."""
+_DECORATION = re.compile("[\u0302-\u0304]|\\^?\\*$")
+"""What tells a new quantity from an old one: ``H̄``, ``H̃``, ``H*``."""
 _PAIRS = {"{": "}", "[": "]", "(": ")", "<": ">"}
 _DEFINITIONS: Mapping[str, str] = {
     "L": r"[TK]-[VU]",
@@ -176,7 +178,7 @@ def label_of(said: str) -> Label | None:
      Label(name='F_2', rates=0, arguments=('q', 'P')), ('L_z', 'x'))
     """
     try:
-        found = tokens(said)[:-1]
+        found = tokens(_DECORATION.sub("", said))[:-1]
     except LanguageError:
         return None
     if not found or len(found) > 40:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -46,6 +47,7 @@ __all__ = ["NAME_KEYS", "InvalidClaim", "Reading"]
 _MAKERS: Mapping[str, Callable[..., Symbol]] = FrozenMapping(
     {"q": Coordinate, "p": Momentum, "quasi": Coordinate, "new_p": Momentum, "momenta": Momentum}
 )
+_OF_OMEGA = re.compile(r"w_?[0-9]?")
 NAME_KEYS = (
     "q", "p", "x", "variables", "new_q", "new_p", "cyclic", "momenta",
     "multipliers", "quasi", "constants", "actions", "slow",
@@ -179,15 +181,18 @@ class Reading:
             if name in names:
                 self.fault("functions", f"{name} is declared as a symbol too")
         signs = {name: self._assumptions(name) for name in functions}
-        for name, symbol in self._conjugates(names):
+        for name, symbol in self._other_names(names):
             if name not in functions:
                 names.setdefault(name, symbol)
         implicit = keys.get("implicit_multiplication") is True
         moving = frozenset(name for key in _MOVING if self.is_names(key) for name in _as_list(keys[key]))
         return Scope({**self.names, **names}, functions, self.time, signs, implicit, moving)
 
-    def _conjugates(self, names: Mapping[str, Symbol]) -> Iterator[tuple[str, Symbol]]:
-        """Yield the momenta by the names of their coordinates, ``p_theta`` for p; of a single one the plain letter."""
+    def _other_names(self, names: Mapping[str, Symbol]) -> Iterator[tuple[str, Symbol]]:
+        """Yield what else declared names are called: ``omega`` for w, ``p_theta`` for p, and p for ``p_theta``."""
+        yield from [
+            (f"omega{name[1:]}", symbol) for name, symbol in names.items() if _OF_OMEGA.fullmatch(name)
+        ]
         if not (self.is_names("q") and self.is_names("p")):
             return
         pairs = list(zip(self.words("q"), self.words("p"), strict=False))

@@ -157,14 +157,21 @@ class _Plain:
 
     def written_out(self, key: str, value: Any) -> Any:
         """Return an answer with what it abbreviates put in."""
-        texts: list[Any] = value if isinstance(value, list) else [value]
         shape = self.kind.shapes.get(key)
+        if shape is Shape.EXPRESSIONS and isinstance(value, Mapping):
+            return {
+                name: self.put_in(key, text, (Quantity(name, ((name, 0),)),)) for name, text in value.items()
+            }
         if shape not in (Shape.TEXT, Shape.TEXTS):
             return value
+        names = components_asked(key, self.of.keys, self.scope) if shape is Shape.TEXTS else ()
+        return self.put_in(key, value, (self.quantity(key), *names))
+
+    def put_in(self, key: str, value: Any, asked: Sequence[Quantity]) -> Any:
+        """Return texts with what they abbreviate put in; what is asked for is no abbreviation."""
+        texts: list[Any] = value if isinstance(value, list) else [value]
         if not all(type(text) is str for text in texts):
             return value
-        names = components_asked(key, self.of.keys, self.scope) if shape is Shape.TEXTS else ()
-        asked = (self.quantity(key), *names)
 
         def is_asked_for(label: Label) -> bool:
             return key == "I" or any(is_asked(label, each, self.scope) for each in asked)
@@ -215,7 +222,7 @@ class _Plain:
             names.append("E")
         if key == "energy_rate":
             return Quantity("dE/dt", (("E", 1), ("H", 1), ("W", 1)))
-        return Quantity(key, tuple((name, 0) for name in names))
+        return Quantity(key, tuple((name.rstrip("'"), name.count("'")) for name in names))
 
     def expression(self, place: str, text: Any, asked: Quantity) -> Any:
         """Return the text of one expression without its left sides; what else it says becomes links."""

@@ -259,7 +259,7 @@ _SPELLINGS = tuple(
         (r"\{\s*\\(?:cal|rm|bf)\s*(\w+)\s*\}", r"\1"),
         (r"\\(?:mathrm|text)\s*\{\s*const\.?\s*\}", "const"),
         (r"\\(?:mathrm|mathcal|mathscr|mathbf)\s*(\w)", r"\1"),
-        (r"\\(?:hat|vec|widehat|overline)\s*(?:\{\s*(\w+)\s*\}|(\w))", r"\1\2"),
+        (r"\\(?:hat|vec|bar|tilde|widehat|widetilde|overline)\s*(?:\{\s*(\w+)\s*\}|(\w))", r"\1\2"),
         (r"\\partial(?![A-Za-z])", "∂"),
         (rf"\\(?:var)?({_GREEK})(?![A-Za-z])", r" \1 "),
         (r"_\s*\{\s*(\w+)\s*\}", r"_\1"),

@@ -31,11 +31,17 @@ _DRAWN = re.compile(
     re.MULTILINE,
 )
 """Lines and large brackets that are drawn with characters."""
+_NAMED = (
+    r"(?:(?:new|total|full|transformed|reduced|resulting|general|corresponding) )?"
+    r"(?:[Hh]amiltonian|Kamiltonian|[Ll]agrangian|Routhian|[Aa]nswer|[Ss]olution|[Rr]esult|EOM|EoM"
+    r"|[Ee]quations? of motion)"
+)
 _PROMPT = re.compile(
     r"^\s*(?:\(%[io]\d{1,5}\)|%[io]\d{1,5}\s?[=:]|ans\s?=|(?:In|Out)\s?\[\d{1,5}\](?::=|=|:)|>>>)(?=\s)"
     r"|(?:(?<==)|^)\s*@\([\w, ]{1,60}\)"
-    r"|^\s*(?:EOM|EoM|Answer|Solution|Result|Hamiltonian|Lagrangian|E-?L|Euler[-–]Lagrange|[Ee]q(?:n|uation)?s?\.?"
-    r"|Equations? of motion|(?:Newton|Lagrange|Hamilton)(?:['’]s)?(?: equations?)?)(?: ?\(\d{1,2}\)| \d{1,2})?:(?=\s)"
+    rf"|^\s*(?:{_NAMED}|[Tt]he {_NAMED}|E-?L|Euler[-–]Lagrange|[Ee]q(?:n|uation)?s?\.?"
+    r"|(?:Newton|Lagrange|Hamilton)(?:['’]s)?(?: equations?)?)(?: ?\(\d{1,2}\)| \d{1,2})?:(?=\s)"
+    rf"|^\s*[Tt]he {_NAMED} (?:is|are|reads?|becomes?|equals)(?: given by)?:?(?=\s)"
     r"|^\s*(?:(?:\d{1,2}|[a-h]|i{1,3})\))[ \t]{1,9}(?=\S)|^\s*\*[ \t]{1,9}(?=\S[^\n]{0,400}=)"
 )
 """What programs and people write before a line: prompts, names of what follows, numbers and points of a list."""

@@ -124,7 +124,8 @@ class Scope:
         close = difflib.get_close_matches(name[:60], known, n=1, cutoff=0.75)
         if close:
             return f"is {close[0]} meant?"
-        named = [*self.names, *self.functions]
+        own = [name for name, s in self.names.items() if s.name == name or s.name not in self.names]
+        named = [*own, *self.functions]
         more = f" and {len(named) - _MAX_TOLD} more" if len(named) > _MAX_TOLD else ""
         return (
             f"the names here are {', '.join(named[:_MAX_TOLD])}{more}"

@@ -1,0 +1,62 @@
+"""Names that people use beside the declared ones: ω for w, H' and H̄ for K, sentences before a Hamiltonian."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.exercise.test_words_around import judged
+
+ROTATED = {
+    "kind": "transformed-hamiltonian-K", "q": ["q"], "p": ["p"], "H": "p**2/2 + q**2/2", "new_q": ["Q"], "new_p": ["P"],
+    "map": {"Q": "p", "P": "-q"},
+}  # fmt: skip
+SWING = {
+    "kind": "solution", "q": ["x"], "equations": ["x_ddot + w**2*x = 0"], "parameters": {"w": "positive", "a": "real"},
+    "initial": {"x": "a", "x_dot": "0"},
+}  # fmt: skip
+OSCILLATOR = {"kind": "legendre-hamiltonian", "q": ["q"], "p": ["p"], "L": "q_dot**2/2 - q**2/2"}
+
+
+@pytest.mark.parametrize(
+    "name", ["H'", "H̄", "H̃", "H*", "H_new", "H(Q,P)", "H'(Q,P)", "K(Q, P, t)", r"\bar H",
+             r"\tilde{H}(Q,P)", r"\mathcal{H}'", r"H^*"]
+)  # fmt: skip
+def test_names_of_the_new_hamiltonian(name: str) -> None:
+    half = r"\frac{P^2 + Q^2}{2}" if "\\" in name else "(P² + Q²)/2"
+    assert judged(**ROTATED, K=f"{name} = {half}").status == "holds"
+    assert judged(**ROTATED, K=f"{name} = {half} + Q").status == "fails"
+
+
+@pytest.mark.parametrize("name", ["L'", "F'", "G̃", "K''", "L*"])
+def test_names_of_something_else(name: str) -> None:
+    assert judged(**ROTATED, K=f"{name} = (P² + Q²)/2").status == "invalid"
+
+
+@pytest.mark.parametrize("typed", ["x(t) = a cos(ωt)", r"x(t) = a\cos(\omega t)", "x = a cos ωt"])
+def test_omega_is_w(typed: str) -> None:
+    assert judged(**SWING, solution={"x": typed}).status == "holds"
+    assert judged(**SWING, solution={"x": typed.replace("cos", "sin")}).status == "fails"
+
+
+def test_omega_beside_w_is_itself() -> None:
+    both = {**SWING, "parameters": {**SWING["parameters"], "omega": "positive"}}
+    assert judged(**both, solution={"x": "a cos(ωt)"}).status == "fails"
+    assert judged(**both, solution={"x": "a cos(wt)"}).status == "holds"
+
+
+@pytest.mark.parametrize("typed", ["x(t) = A cos(w t), A = a", "x = a cos(2π f t), where f = w/(2π)"])
+def test_a_solution_with_abbreviations(typed: str) -> None:
+    assert judged(**SWING, solution={"x": typed}).status == "holds"
+    assert judged(**SWING, solution={"x": typed + " + 1"}).status == "fails"
+
+
+@pytest.mark.parametrize(
+    "said", ["The Hamiltonian is H = {}", "the total Hamiltonian reads: {}", "Hamiltonian: {}", "{} = H"]
+)  # fmt: skip
+def test_sentences_before_a_hamiltonian(said: str) -> None:
+    assert judged(**OSCILLATOR, H=said.format("p²/2 + q²/2")).status == "holds"
+    assert judged(**OSCILLATOR, H=said.format("p²/2 - q²/2")).status == "fails"
+
+
+def test_a_denial_is_not_passed_over() -> None:
+    assert judged(**OSCILLATOR, H="The Hamiltonian is not p²/2 + q²/2").status == "invalid"
