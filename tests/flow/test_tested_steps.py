@@ -181,7 +181,8 @@ SHAPES = {
 }  # fmt: skip
 
 
-OF_WAYS = {"quad": (7, 8, 10, 16, 30)}
+FEWER = (4, 7, 10, 14, 18, 24, 30)
+OF_WAYS = {"quad": (7, 8, 10, 16, 30), "extended": FEWER, "tolerance": FEWER}
 
 
 def scan_wells(name: str, shape: str) -> None:
