@@ -60,3 +60,9 @@ def test_sentences_before_a_hamiltonian(said: str) -> None:
 
 def test_a_denial_is_not_passed_over() -> None:
     assert judged(**OSCILLATOR, H="The Hamiltonian is not p²/2 + q²/2").status == "invalid"
+
+
+def test_the_time_keeps_its_name() -> None:
+    timed = {**SWING, "t": "omega", "solution": {"x": "a*cos(w*omega)"}}
+    assert judged(**timed).status == "holds"
+    assert judged(**{**timed, "solution": {"x": "a*cos(omega**2)"}}).status == "fails"

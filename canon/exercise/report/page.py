@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import Element, SubElement, tostring
 
 from canon.exercise.report.page_style import PAGE_STYLE, STYLE
+from canon.exercise.sheet.declared_symbols import NAME_KEYS
 from canon.exercise.sheet.kind import COMMON, Shape
 from canon.exercise.sheet.kinds import KINDS, kind_of
-from canon.exercise.sheet.reading import NAME_KEYS, InvalidClaim, Reading
+from canon.exercise.sheet.reading import InvalidClaim, Reading
 from canon.expression.mathml import formula
 from canon.expression.parse import Scope
 from canon.expression.symbols.user_input import counted

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import time
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -11,9 +10,9 @@ import sympy as sp
 from sympy import Expr, Rational, Symbol
 
 from canon.cached_property import cached_property
+from canon.exercise.sheet.declared_symbols import DeclaredSymbols, as_list
 from canon.exercise.sheet.field_texts import texts_in
 from canon.exercise.sheet.kept_parses import parsed
-from canon.exercise.sheet.key_shapes import ASSUMPTIONS
 from canon.exercise.sheet.kind import Kind, Shape
 from canon.exercise.sheet.kinds import kind_of
 from canon.exercise.sheet.sheet import Claim, ClaimError
@@ -26,7 +25,6 @@ from canon.expression.parse import (
     parse_equation,
     parse_expression,
 )
-from canon.expression.symbols.symbol import Coordinate, Momentum, velocity
 from canon.expression.symbols.user_input import counted
 from canon.expression.text.units import units
 from canon.frozen_mapping import FrozenMapping
@@ -42,21 +40,7 @@ if TYPE_CHECKING:
 
     from canon.exercise.sheet.typed_answers import Link
 
-__all__ = ["NAME_KEYS", "InvalidClaim", "Reading"]
-
-_MAKERS: Mapping[str, Callable[..., Symbol]] = FrozenMapping(
-    {"q": Coordinate, "p": Momentum, "quasi": Coordinate, "new_p": Momentum, "momenta": Momentum}
-)
-_OF_OMEGA = re.compile(r"w_?[0-9]?")
-NAME_KEYS = (
-    "q", "p", "x", "variables", "new_q", "new_p", "cyclic", "momenta",
-    "multipliers", "quasi", "constants", "actions", "slow",
-)  # fmt: skip
-"""Keys that declare names."""
-
-
-_MOVING = ("q", "p", "x", "variables", "new_q", "new_p", "quasi")
-"""Keys of names that stand for what changes in time."""
+__all__ = ["InvalidClaim", "Reading"]
 
 
 class InvalidClaim(ValueError):
@@ -146,7 +130,7 @@ class Reading:
 
     def words(self, key: str) -> tuple[str, ...]:
         """Return a list of words as written."""
-        return tuple(map(str, _as_list(self.claim.keys[key])))
+        return self._declared.words(key)
 
     @cached_property
     def kind(self) -> Kind:
@@ -161,63 +145,16 @@ class Reading:
     @cached_property
     def time(self) -> Symbol:
         """The symbol of the time."""
-        name = str(self.claim.keys.get("t", "t"))
-        if not (name.isidentifier() and name.isascii()):
-            self.fault("t", "should be the name of the time")
-        return Symbol(name, **self._assumptions(name))
+        return self._declared.time
 
     @cached_property
     def scope(self) -> Scope:
         """The declared names."""
-        keys, names = self.claim.keys, self._variables()
-        functions = {name: tuple(_as_list(args)) for name, args in keys.get("functions", {}).items()}
-        for name in keys.get("parameters", {}):
-            if name not in functions and name != self.time.name and not _is_rate(name, names):
-                names.setdefault(name, Symbol(name, **self._assumptions(name)))
-        if self.is_names("quasi"):
-            rates = {f"{u}_dot": velocity(names[u]) for u in _as_list(keys["quasi"])}
-            names = {**rates, **names}
-        for name in functions:
-            if name in names:
-                self.fault("functions", f"{name} is declared as a symbol too")
-        signs = {name: self._assumptions(name) for name in functions}
-        for name, symbol in self._other_names(names):
-            if name not in functions:
-                names.setdefault(name, symbol)
-        implicit = keys.get("implicit_multiplication") is True
-        moving = frozenset(name for key in _MOVING if self.is_names(key) for name in _as_list(keys[key]))
-        return Scope({**self.names, **names}, functions, self.time, signs, implicit, moving)
+        return self._declared.scope(self.names)
 
-    def _other_names(self, names: Mapping[str, Symbol]) -> Iterator[tuple[str, Symbol]]:
-        """Yield what else declared names are called: ``omega`` for w, ``p_theta`` for p, and p for ``p_theta``."""
-        yield from [
-            (f"omega{name[1:]}", symbol) for name, symbol in names.items() if _OF_OMEGA.fullmatch(name)
-        ]
-        if not (self.is_names("q") and self.is_names("p")):
-            return
-        pairs = list(zip(self.words("q"), self.words("p"), strict=False))
-        yield from ((f"p_{q}", names[p]) for q, p in pairs if p != f"p{q}")  # which is read as p_q already
-        if len(pairs) == 1 and pairs[0][1].startswith("p"):
-            yield "p", names[pairs[0][1]]
-
-    def _variables(self) -> dict[str, Symbol]:
-        """Return the symbols of the names that stand under keys of their own, each declared once."""
-        names: dict[str, Symbol] = {}
-        declared = ((key, name) for key in NAME_KEYS if self.is_names(key) for name in self.words(key))
-        for key, name in declared:
-            if name == self.time.name:
-                self.fault(key, f"{name} is the name of the time; choose another, or say t = 'tau'")
-            if key == "cyclic":
-                continue
-            if name in names:
-                self.fault(key, f"{name} is declared twice")
-            real = key not in self.kind.complex_names
-            said = self._assumptions(name) if real else {"complex": True}
-            names[name] = _MAKERS.get(key, Symbol)(name, **said)
-        for name in names:
-            if _is_rate(name, names):
-                self.fault("q", f"{name} is the velocity of a coordinate that is declared too; rename one")
-        return names
+    @cached_property
+    def _declared(self) -> DeclaredSymbols:
+        return DeclaredSymbols(self.claim.keys, self.kind, self.fault)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -239,7 +176,7 @@ class Reading:
     def domain(self) -> Domain:
         """The conditions of the claim and the box of its hints."""
         conditions = [*self._of_rates()]
-        for position, text in enumerate(_as_list(self.claim.keys.get("domain", []))):
+        for position, text in enumerate(as_list(self.claim.keys.get("domain", []))):
             condition = self._parse(parse_condition, text, f"domain[{position}]")
             if condition is sp.false:
                 self.fault(f"domain[{position}]", "no point satisfies this condition")
@@ -275,12 +212,12 @@ class Reading:
 
     def symbols(self, key: str) -> tuple[Symbol, ...]:
         """Return the symbols of a list of names."""
-        return tuple(self.scope.names[name] for name in _as_list(self.claim.keys.get(key, [])))
+        return tuple(self.scope.names[name] for name in as_list(self.claim.keys.get(key, [])))
 
     def subset(self, key: str, of: str) -> tuple[Symbol, ...]:
         """Return the symbols of a list of names that must be among those of another list."""
-        allowed = _as_list(self.claim.keys[of])
-        for name in _as_list(self.claim.keys[key]):
+        allowed = as_list(self.claim.keys[of])
+        for name in as_list(self.claim.keys[key]):
             if name not in allowed:
                 self.fault(key, f"{name} is not among {of} = {', '.join(allowed)}")
         return self.symbols(key)
@@ -306,13 +243,13 @@ class Reading:
         """Return the expressions of a list, as many as there are names under ``like``."""
         found = tuple(
             self._parse(parse_expression, text, f"{key}[{i}]")
-            for i, text in enumerate(_as_list(self.claim.keys[key]))
+            for i, text in enumerate(as_list(self.claim.keys[key]))
         )
         return self._as_many(key, found, like)
 
     def equations(self, key: str) -> tuple[Expr, ...]:
         """Return the equations of a list, each as what should vanish."""
-        texts = _as_list(self.claim.keys[key])
+        texts = as_list(self.claim.keys[key])
         if not texts:
             self.fault(key, "at least one equation is needed")
         read = self.constraint if key == "constraints" else self.equation
@@ -355,7 +292,7 @@ class Reading:
     def inside(self, where: str, value: Any, like: str = "") -> tuple[Expr, ...]:
         """Return the expressions of a list that stands inside another key."""
         found = tuple(
-            self._parse(parse_expression, text, f"{where}[{i}]") for i, text in enumerate(_as_list(value))
+            self._parse(parse_expression, text, f"{where}[{i}]") for i, text in enumerate(as_list(value))
         )
         return self._as_many(where, found, like)
 
@@ -372,23 +309,17 @@ class Reading:
         return found
 
     def _as_many(self, key: str, found: tuple[Expr, ...], like: str) -> tuple[Expr, ...]:
-        if like and len(found) != len(_as_list(self.claim.keys[like])):
+        if like and len(found) != len(as_list(self.claim.keys[like])):
             self.fault(
                 key,
                 f"{counted(len(found), 'expression')} for the "
-                f"{len(_as_list(self.claim.keys[like]))} names of {like}",
+                f"{len(as_list(self.claim.keys[like]))} names of {like}",
             )
         return found
 
     def is_names(self, key: str) -> bool:
         """Whether a list of names stands under a key."""
-        return self.has(key) and self.kind.shapes.get(key) is Shape.NAMES
-
-    def _assumptions(self, name: str) -> dict[str, bool]:
-        word = self.claim.keys.get("parameters", {}).get(name, "real")
-        if word not in ASSUMPTIONS:
-            self.fault("parameters", f"{word} can't be assumed of {name}; write {', '.join(ASSUMPTIONS)}")
-        return {"real": True} if word == "real" else {"real": True, word: True}
+        return self._declared.is_names(key)
 
     def _parse(self, parse: Callable[[str, Scope], Any], text: Any, key: str) -> Any:
         if key in self.instead:
@@ -400,16 +331,6 @@ class Reading:
             raise self.error(key, error) from error
 
 
-def _is_rate(name: str, names: Mapping[str, Symbol]) -> bool:
-    """Whether a name is that of a declared coordinate's velocity or acceleration."""
-    bases = (name.removesuffix(ending) for ending in ("_ddot", "_dot") if name.endswith(ending))
-    return any(isinstance(names.get(base), Coordinate) for base in bases)
-
-
 def _the_one(value: Any) -> Any:
     """Return what stands alone in a list, or the value itself."""
     return value[0] if isinstance(value, list) and len(value) == 1 else value
-
-
-def _as_list(value: Any) -> list[Any]:
-    return value if isinstance(value, list) else [value]
