@@ -1,5 +1,7 @@
 """States at times the user names."""
 
+from dataclasses import astuple
+
 import numpy as np
 import pytest
 
@@ -66,8 +68,8 @@ def test_times_that_make_no_sense_are_refused(wrong, message):
 
 
 @pytest.mark.parametrize("precision", ["double", "compensated", "extended", "double-double", "single"])
-@pytest.mark.parametrize("orbits", [1, 7])
-def test_states_kept_in_compiled_code_are_those_kept_one_by_one(precision, orbits, monkeypatch):
+@pytest.mark.parametrize(("orbits", "cadence"), [(1, None), (7, None), (1, 1), (7, 1)])
+def test_states_kept_in_compiled_code_are_those_kept_one_by_one(precision, orbits, cadence, monkeypatch):
     start = np.array(HENON_HEILES_START)
     if orbits > 1:
         start = start[:, np.newaxis] * np.linspace(0.9, 1.0, orbits)
@@ -79,15 +81,25 @@ def test_states_kept_in_compiled_code_are_those_kept_one_by_one(precision, orbit
             monkeypatch.setattr(advance_orbits, "__defaults__", (*advance_orbits.__defaults__[:-1], many))
             for kept in ({"samples": 3000}, {"times": np.sort(np.random.default_rng(1).uniform(0, 30, 500))}):
                 motion = propagate(
-                    HENON_HEILES, (0, 30), start, method=method, step=0.01, precision=precision, **kept
+                    HENON_HEILES,
+                    (0, 30),
+                    start,
+                    method=method,
+                    step=0.01,
+                    precision=precision,
+                    cadence=cadence,
+                    **kept,
                 )
-                found.append((motion.t, motion.y, motion.final))
+                watched = [s for found_of in motion.statistics.values() for s in astuple(found_of)]
+                assert len(watched) == (0 if cadence is None else 3)
+                found.append((motion.t, motion.y, motion.final, *watched))
         for compiled, one_by_one in zip(found[:2], found[2:], strict=True):
             for a, b in zip(compiled, one_by_one, strict=True):
                 np.testing.assert_array_equal(a, b)
 
 
-def test_an_interruption_between_slices_keeps_what_lies_before(monkeypatch):
+@pytest.mark.parametrize("watched", [{}, {"cadence": 1}])
+def test_an_interruption_between_slices_keeps_what_lies_before(watched):
     calls = []
 
     def interrupted(fraction):
@@ -96,13 +108,21 @@ def test_an_interruption_between_slices_keeps_what_lies_before(monkeypatch):
             raise KeyboardInterrupt
 
     whole = propagate(
-        HENON_HEILES, (0, 50), HENON_HEILES_START, method=Splitting("verlet"), step=0.01, samples=5000
+        HENON_HEILES,
+        (0, 50),
+        HENON_HEILES_START,
+        method=Splitting("verlet"),
+        step=0.01,
+        samples=5000,
+        **watched,
     )
     with pytest.raises(KeyboardInterrupt) as caught:
         propagate(
             HENON_HEILES, (0, 50), HENON_HEILES_START, method=Splitting("verlet"), step=0.01, samples=5000,
-            progress=interrupted,
+            progress=interrupted, **watched,
         )  # fmt: skip
     part = caught.value.motion
     assert 64 < len(part.t) < 5001
     np.testing.assert_array_equal(part.y, whole.y[:, : len(part.t)])
+    for name, all_of_it in whole.statistics.items():
+        np.testing.assert_array_equal(part.statistics[name].mean, all_of_it.mean[: len(part.t) - 1])

@@ -111,30 +111,27 @@ def advance_orbits(
         A state is not finite; the error knows the last finite one.
     """
     buffers = LoopBuffers(loop, high, low, coefficients, watch, memory)
-    rows_kept, watched = _Rows(buffers, len(stops)), list[Array]()
+    rows_kept = _Rows(buffers, len(stops))
     started, slices = time.thread_time(), _Slices(buffers, stops[0], stops[-1], rows, progress)
-    one_by_one = watch is not None or len(stops) < many
+    one_by_one = len(stops) < many
     numbers = np.array(() if one_by_one else stops, dtype=np.int64)
     try:
         while (sample := rows_kept.count) < len(stops):
             ahead = 0 if one_by_one else slices.stops_ahead(numbers[sample : sample + rows_kept.room])
-            if ahead > 1:
+            if sample and ahead > 1:
                 slices.go_through(numbers[sample : sample + ahead], rows_kept)
                 continue
             slices.go_to(stops[sample])
-            if sample and watch is not None:
-                watched.append(buffers.watched())
             rows_kept.keep()
     except (KeyboardInterrupt, Interruption):
         if not rows_kept.count:
             raise
         slices.check_finite()
     kept, beyond = rows_kept.all()
-    entries = (buffers.orbits, buffers.watch.start.shape[1], 3) if buffers.watch is not None else ()
     found = AdvancedStates(
         kept[0],
         kept[1],
-        np.array(watched).reshape(-1, *entries) if watch is not None else None,
+        rows_kept.watched,
         beyond,
         int(beyond[-1][:, 0].sum()) if loop.implicit else 0,
         time.thread_time() - started,
@@ -210,7 +207,7 @@ class _Slices:
 
 
 class _Rows:
-    """The states kept: copies of a buffers's memory, brought into order many at a time.
+    """The states kept, and what was watched between them: copies of memory, brought into order many at a time.
 
     Parameters
     ----------
@@ -227,6 +224,15 @@ class _Rows:
         self._y = np.empty((at_once, *buffers.y.shape), dtype=buffers.y.dtype)
         self._e = np.empty((at_once, *buffers.e.shape), dtype=buffers.e.dtype)
         self._beyond = np.empty((samples, *buffers.beyond_in(buffers.e).shape), dtype=buffers.e.dtype)
+        self._watched = list[Array]()
+
+    @property
+    def watched(self) -> Array | None:
+        """What was watched between the states kept, shape (times − 1, orbits, observables, 3)."""
+        if self.buffers.watch is None:
+            return None
+        orbits, observables, _ = self.buffers.watch.start.shape
+        return np.concatenate([np.empty((0, orbits, observables, 3)), *self._watched])
 
     def keep(self) -> None:
         """Keep the state that the buffers has reached."""
@@ -235,6 +241,8 @@ class _Rows:
             self._order()
             place = 0
         self._y[place], self._e[place] = self.buffers.y, self.buffers.e
+        if self.count and self.buffers.watch is not None:
+            self._watched.append(self.buffers.watched()[np.newaxis])
         self.count += 1
 
     @property
@@ -247,8 +255,10 @@ class _Rows:
         if self.count - self._ordered == len(self._y):
             self._order()
         place = self.count - self._ordered
-        self.buffers.sample(stops, self._y[place:], self._e[place:])
+        watched = self.buffers.sample(stops, self._y[place:], self._e[place:])
         self.count += len(stops) - 1
+        if watched is not None:
+            self._watched.append(watched)
 
     def _order(self) -> None:
         part, new = slice(self._ordered, self.count), self.count - self._ordered

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from canon.array import all_finite
 from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
-from canon.kernel.loops.sampling_loop import sampling_function
+from canon.kernel.loops.sampling_loop import sampling_function, watched_sampling_function
 from canon.kernel.loops.statistics_loop import ENTRIES
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ class LoopBuffers:
 
     def watched(self) -> Array:
         """Return the sums and bounds of the changes since they were last asked for, and start anew."""
-        found = self.record[..., 1:, :].sum(axis=-1).astype(np.float64)
+        found = _changes(self.record)
         self._forget()
         return found
 
@@ -119,8 +119,10 @@ class LoopBuffers:
         numbers = (first, steps, self.blocks, self.watch.cadence)
         self.watch.code.call(self.loop.code.address, *self._addresses, *numbers, self.record.ctypes.data)
 
-    def sample(self, stops: Memory, y: Memory, e: Memory) -> None:
+    def sample(self, stops: Memory, y: Memory, e: Memory) -> Array | None:
         """Go from stop to stop, the first of which is where the motion stands, and copy y and e at the others.
+
+        What is watched is returned as :meth:`watched` would have it at each of them.
 
         Parameters
         ----------
@@ -129,9 +131,18 @@ class LoopBuffers:
         y, e
             Where the copies go, one after the other along the first axis.
         """
+        samples = len(stops) - 1
         rows = stops.ctypes.data, y.ctypes.data, e.ctypes.data
-        sizes = len(stops) - 1, self.blocks, self.y.nbytes, self.e.nbytes
-        sampling_function().call(self.loop.code.address, *self._addresses, *rows, *sizes)
+        arguments = self.loop.code.address, *self._addresses, *rows
+        sizes = samples, self.blocks, self.y.nbytes, self.e.nbytes
+        if self.watch is None:
+            sampling_function().call(*arguments, *sizes)
+            return None
+        fresh, kept = self.record.copy(), np.empty((samples, *self.record.shape), dtype=self.record.dtype)
+        records = self.record.ctypes.data, fresh.ctypes.data, kept.ctypes.data
+        followed = self.watch.code.address, *records, self.watch.cadence, self.record.nbytes
+        watched_sampling_function().call(*arguments, *sizes, *followed)
+        return _changes(kept)
 
     def _call(self, y: Memory, e: Memory, first: int, steps: int, blocks: int) -> None:
         self.loop.code.call(y.ctypes.data, e.ctypes.data, self.c.ctypes.data, first, steps, blocks)
@@ -225,3 +236,8 @@ def _complaint(
         why = "a collision or the edge of H's domain; stop earlier, or take a smaller step or Taylor()"
     which = "" if orbit is None else f" of orbit {orbit}"
     return NonFiniteStateError(f"{what}{which}, after {time_and_state(t, state)}: {why}", t, state)
+
+
+def _changes(record: Memory) -> Array:
+    """Return sums and bounds of changes from records of shape (…, entries, parts) as doubles."""
+    return record[..., 1:, :].sum(axis=-1).astype(np.float64)

@@ -1,4 +1,4 @@
-"""Sampling loop: the states at many step numbers copied in one call, so that a sample costs no more than its copy."""
+"""Sampling loop: states, and what is watched between them, copied in one call, so that a sample costs its copy."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from canon.kernel.llvm.writer import Writer
 if TYPE_CHECKING:
     from canon.kernel.llvm.machine_code import MachineCode
 
-__all__ = ["sampling_function"]
+__all__ = ["sampling_function", "watched_sampling_function"]
 
 _POINTER, _INTEGER = ctypes.c_void_p, ctypes.c_int64
 _SIGNATURE = (*[_POINTER] * 7, *[_INTEGER] * 4)
@@ -21,6 +21,14 @@ _PARAMETERS = ", ".join(
     (
         "ptr %advance, ptr %y, ptr %e, ptr %c, ptr noalias %stops, ptr noalias %kept_y, ptr noalias %kept_e",
         "i64 %samples, i64 %blocks, i64 %y_bytes, i64 %e_bytes",
+    )
+)
+
+
+_WATCHED = ", ".join(
+    (
+        "ptr %follow, ptr noalias %record, ptr noalias %fresh, ptr noalias %kept_records",
+        "i64 %cadence, i64 %record_bytes",
     )
 )
 
@@ -35,17 +43,53 @@ def sampling_function() -> MachineCode:
     """
     w = Writer(DOUBLE)
     with w.loop(0, "%samples") as k:
-        begin, end = (
-            w.let(f"load i64, ptr {_at(w, 'i64', '%stops', place)}")
-            for place in (k, w.let(f"add i64 {k}, 1"))
-        )
-        steps = w.let(f"sub i64 {end}, {begin}")
+        begin, steps = _interval(w, k)
         w.line(f"call void %advance(ptr %y, ptr %e, ptr %c, i64 {begin}, i64 {steps}, i64 %blocks)")
-        for source, target, size in (("%y", "%kept_y", "%y_bytes"), ("%e", "%kept_e", "%e_bytes")):
-            row = _at(w, "i8", target, w.let(f"mul i64 {k}, {size}"))
-            w.line(f"call void @llvm.memcpy.p0.p0.i64(ptr {row}, ptr {source}, i64 {size}, i1 false)")
-    w.declarations.add("declare void @llvm.memcpy.p0.p0.i64(ptr, ptr, i64, i1)")
+        _keep_states(w, k)
     return compiled_function(w, "sample", _PARAMETERS, _SIGNATURE)
+
+
+@functools.cache
+def watched_sampling_function() -> MachineCode:
+    """Compile the same with ``(…, follow, record, fresh, kept_records, cadence, record_bytes)`` behind its arguments.
+
+    ``follow`` is a :func:`canon.kernel.loops.statistics_loop.statistics_function`. What its ``record`` has at a stop
+    is copied, and ``fresh`` is put in its place.
+    """
+    w = Writer(DOUBLE)
+    with w.loop(0, "%samples") as k:
+        begin, steps = _interval(w, k)
+        orbit = "ptr %advance, ptr %y, ptr %e, ptr %c"
+        w.line(
+            f"call void %follow({orbit}, i64 {begin}, i64 {steps}, i64 %blocks, i64 %cadence, ptr %record)"
+        )
+        _keep_states(w, k)
+        _copy(w, "%record", _row(w, "%kept_records", k, "%record_bytes"), "%record_bytes")
+        _copy(w, "%fresh", "%record", "%record_bytes")
+    signature = (*_SIGNATURE, *[_POINTER] * 4, *[_INTEGER] * 2)
+    return compiled_function(w, "sample_watched", f"{_PARAMETERS}, {_WATCHED}", signature)
+
+
+def _interval(w: Writer, k: str) -> tuple[str, str]:
+    """Load the step number at which the motion stands, and count the steps to the next stop."""
+    begin, end = (
+        w.let(f"load i64, ptr {_at(w, 'i64', '%stops', place)}") for place in (k, w.let(f"add i64 {k}, 1"))
+    )
+    return begin, w.let(f"sub i64 {end}, {begin}")
+
+
+def _keep_states(w: Writer, k: str) -> None:
+    for source, target, size in (("%y", "%kept_y", "%y_bytes"), ("%e", "%kept_e", "%e_bytes")):
+        _copy(w, source, _row(w, target, k, size), size)
+
+
+def _copy(w: Writer, source: str, target: str, size: str) -> None:
+    w.declarations.add("declare void @llvm.memcpy.p0.p0.i64(ptr, ptr, i64, i1)")
+    w.line(f"call void @llvm.memcpy.p0.p0.i64(ptr {target}, ptr {source}, i64 {size}, i1 false)")
+
+
+def _row(w: Writer, array: str, k: str, size: str) -> str:
+    return _at(w, "i8", array, w.let(f"mul i64 {k}, {size}"))
 
 
 def _at(w: Writer, kind: str, array: str, place: str) -> str:
