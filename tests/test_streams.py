@@ -147,6 +147,7 @@ def begun(tmp_path):
     file = tmp_path / "long.toml"
     file.write_text(LONG)
     command = [*CANON, "study", "run", str(file), "--jobs", "2", "--checkpoint", "0"]
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # where the tests run in the background too
     with subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
     ) as program:
