@@ -174,6 +174,7 @@ class Stuck(concurrent.futures.ProcessPoolExecutor):
         threading.Event().wait()
 concurrent.futures.ProcessPoolExecutor = Stuck
 if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     threading.Timer(3.0, signal.raise_signal, [signal.SIGINT]).start()
     sys.exit(main(["study", "run", sys.argv[1], "--jobs", "2"]))
 """
