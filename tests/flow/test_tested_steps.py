@@ -186,7 +186,9 @@ OF_WAYS = {"quad": (7, 8, 16, 30), "extended": FEWER, "tolerance": FEWER}
 
 
 def scan_wells(name: str, shape: str) -> None:
-    for power, start in itertools.product(OF_WAYS.get(name, POWERS), STARTS[:3] if name == "quad" else STARTS):
+    for power, start in itertools.product(
+        OF_WAYS.get(name, POWERS), STARTS[:3] if name == "quad" else STARTS
+    ):
         H = SHAPES[shape](power)
         motion = propagate(H, (0, 2), start, samples=4, **WAYS[name])
         estimate = motion.error_estimate()
