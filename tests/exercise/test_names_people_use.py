@@ -66,3 +66,11 @@ def test_the_time_keeps_its_name() -> None:
     timed = {**SWING, "t": "omega", "solution": {"x": "a*cos(w*omega)"}}
     assert judged(**timed).status == "holds"
     assert judged(**{**timed, "solution": {"x": "a*cos(omega**2)"}}).status == "fails"
+
+
+def test_the_name_of_what_is_asked_is_no_answer() -> None:
+    """ω = ω says nothing, although ω would be w elsewhere."""
+    asked = {"kind": "frequency", "q": ["q"], "p": ["p"], "H": "p**2/2 + w**2*q**2/2"}
+    asked |= {"parameters": {"w": "positive", "E": "positive"}}
+    assert judged(**asked, omega=["omega"]).status == "invalid"
+    assert judged(**asked, omega=["w"]).status == "holds"

@@ -116,9 +116,10 @@ class DeclaredSymbols:
 
     def _other_names(self, names: Mapping[str, Symbol]) -> Iterator[tuple[str, Symbol]]:
         """Yield what else names are called: ``omega`` for w, ``p_theta`` for p, and p for ``p_theta``."""
-        yield from (
-            (f"omega{name[1:]}", symbol) for name, symbol in names.items() if _OF_OMEGA.fullmatch(name)
-        )
+        if "omega" not in self.kind.shapes:  # there it is the name of what is asked
+            yield from (
+                (f"omega{name[1:]}", symbol) for name, symbol in names.items() if _OF_OMEGA.fullmatch(name)
+            )
         if not (self.is_names("q") and self.is_names("p")):
             return
         pairs = list(zip(self.words("q"), self.words("p"), strict=False))
