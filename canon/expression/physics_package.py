@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from canon.expression.text.tokens import MAX_CHARACTERS
+
 __all__ = ["written_out"]
 
 _BRACED = r"\s{0,9}\{((?:[^{}]|\{(?:[^{}]|\{[^{}]{0,99}\}){0,99}\}){0,200})\}"
@@ -25,7 +27,7 @@ def written_out(text: str) -> str:
     >>> print(written_out(r"\dv[2]{x}{t}, \pdv{F}{q}{t}"))
     \frac{d^{2}x}{dt^{2}}, \frac{\partial^{2}F}{\partial q\partial t}
     """
-    if "\\" not in text:
+    if "\\" not in text or len(text) > MAX_CHARACTERS:  # the parser refuses so long a text
         return text
     for _ in range(_MOST):
         text, found = _DERIVATIVE.subn(_fraction, text)

@@ -248,7 +248,6 @@ def test_the_search_for_a_repair_of_a_jump_in_time_ends() -> None:
         "kind": "solution", "q": ["x"], "equations": ["x_ddot + w**2*x = 0"], "parameters": {"w": P, "a": "real"},
         "initial": {"x": "a", "x_dot": "0"},
     }  # fmt: skip
-    assert (
-        judged(**asked, solution={"x": "a*cos(w*t)*sign(t)**2"}).status == "fails"
-    )  # it was a RecursionError
+    # It was a RecursionError.
+    assert judged(**asked, solution={"x": "a*cos(w*t)*sign(t)**2"}).status == "fails"
     assert judged(**asked, solution={"x": "a*cos(w*t)"}).status == "holds"

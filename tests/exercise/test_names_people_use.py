@@ -27,7 +27,7 @@ def test_names_of_the_new_hamiltonian(name: str) -> None:
     assert judged(**ROTATED, K=f"{name} = {half} + Q").status == "fails"
 
 
-@pytest.mark.parametrize("name", ["L'", "F'", "G̃", "K''", "L*"])
+@pytest.mark.parametrize("name", ["L'", "F'", "G̃", "K''", "L*", "dH/dt", "Ḣ", "dK/dt", r"\dot H"])
 def test_names_of_something_else(name: str) -> None:
     assert judged(**ROTATED, K=f"{name} = (P² + Q²)/2").status == "invalid"
 
@@ -60,6 +60,15 @@ def test_sentences_before_a_hamiltonian(said: str) -> None:
 
 def test_a_denial_is_not_passed_over() -> None:
     assert judged(**OSCILLATOR, H="The Hamiltonian is not p²/2 + q²/2").status == "invalid"
+
+
+def test_a_coordinate_with_another_name_is_derived_once() -> None:
+    """ω stood beside w among the coordinates, d/dt took both, and twice the force held."""
+    spring = {"kind": "euler-lagrange", "q": ["w"], "L": "m*w_dot**2/2 - k*w**2/2"}
+    spring["parameters"] = {"m": "positive", "k": "positive"}
+    for name in ("w", "omega"):
+        assert judged(**spring, claim=[f"d/dt(m {name}') + k {name} = 0"]).status == "holds"
+        assert judged(**spring, claim=[f"d/dt(m {name}') + 2 k {name} = 0"]).status == "fails"
 
 
 def test_the_time_keeps_its_name() -> None:

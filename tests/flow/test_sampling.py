@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from canon.flow.fixed_step.advance import advance_orbits
+from canon.flow.fixed_step.loop_buffers import LoopBuffers
 from canon.flow.method.method import DOP853, Gauss, Splitting, Taylor
 from canon.flow.propagation import propagate
 from tests.flow.systems import HENON_HEILES, HENON_HEILES_START
@@ -70,6 +71,8 @@ def test_times_that_make_no_sense_are_refused(wrong, message):
 @pytest.mark.parametrize("precision", ["double", "compensated", "extended", "double-double", "single"])
 @pytest.mark.parametrize(("orbits", "cadence"), [(1, None), (7, None), (1, 1), (7, 1)])
 def test_states_kept_in_compiled_code_are_those_kept_one_by_one(precision, orbits, cadence, monkeypatch):
+    in_compiled_code, sample = [], LoopBuffers.sample
+    monkeypatch.setattr(LoopBuffers, "sample", lambda *a: in_compiled_code.append(a) or sample(*a))
     start = np.array(HENON_HEILES_START)
     if orbits > 1:
         start = start[:, np.newaxis] * np.linspace(0.9, 1.0, orbits)
@@ -93,6 +96,8 @@ def test_states_kept_in_compiled_code_are_those_kept_one_by_one(precision, orbit
                 watched = [s for found_of in motion.statistics.values() for s in astuple(found_of)]
                 assert len(watched) == (0 if cadence is None else 3)
                 found.append((motion.t, motion.y, motion.final, *watched))
+            assert bool(in_compiled_code) == (many == 2)
+            in_compiled_code.clear()
         for compiled, one_by_one in zip(found[:2], found[2:], strict=True):
             for a, b in zip(compiled, one_by_one, strict=True):
                 np.testing.assert_array_equal(a, b)

@@ -182,6 +182,7 @@ SHAPES = {
 
 
 FEWER = (4, 7, 10, 14, 18, 24, 30)
+"""Powers of the ways in which each of them needs machine code of its own, by far the most of the time."""
 OF_WAYS = {"quad": (7, 8, 16, 30), "extended": FEWER, "tolerance": FEWER}
 
 

@@ -120,7 +120,7 @@ def test_projection_keeps_the_constraint_at_round_off():
 def test_projection_for_many_steps_from_ten_starts(speed):
     """Each step is projected on its own, so that many short runs say what one long one does."""
     start = np.array([0.8, -0.6]), speed * np.array([0.6, 0.8])
-    assert run(pendulum(), *start, 0.05, 10_000, project=True) < 4e-15
+    assert run(pendulum(), *start, 0.05, 20_000, project=True) < 4e-15
 
 
 @pytest.mark.parametrize(

@@ -177,7 +177,7 @@ def _passing(
 
 def _symbols(wrong: WrongAnswer) -> tuple[sp.Symbol, ...]:
     """Return what may have been meant in place of a symbol."""
-    names = tuple(dict.fromkeys(wrong.reading.scope.names.values()))
+    names = tuple(wrong.reading.scope.names.values())
     rates = (velocity(s) for s in names if isinstance(s, Coordinate)) if wrong.reading.has("L") else ()
     return (*names, wrong.reading.time, *rates)
 

@@ -30,7 +30,7 @@ _MAKERS: Mapping[str, Callable[..., Symbol]] = FrozenMapping(
 )
 _MOVING = ("q", "p", "x", "variables", "new_q", "new_p", "quasi")
 """Keys of names that stand for what changes in time."""
-_OF_OMEGA = re.compile(r"w_?[0-9]?")
+_OF_OMEGA = re.compile(r"w(?:_?[0-9])?")
 
 
 @dataclass(frozen=True)
@@ -72,13 +72,12 @@ class DeclaredSymbols:
         for name in functions:
             if name in names:
                 self.fault("functions", f"{name} is declared as a symbol too")
-        for name, symbol in [*self._other_names(names)]:
-            if name not in functions and name != self.time.name:
-                names.setdefault(name, symbol)
+        taken = {*added, *names, *functions, self.time.name, *self.kind.answer}
+        other = {name: symbol for name, symbol in self._other_names(names) if name not in taken}
         signs = {name: self.assumptions(name) for name in functions}
         implicit = keys.get("implicit_multiplication") is True
         moving = frozenset(name for key in _MOVING if self.is_names(key) for name in as_list(keys[key]))
-        return Scope({**added, **names}, functions, self.time, signs, implicit, moving)
+        return Scope({**added, **names}, functions, self.time, signs, implicit, moving, FrozenMapping(other))
 
     def is_names(self, key: str) -> bool:
         """Whether a list of names stands under a key."""
@@ -116,10 +115,9 @@ class DeclaredSymbols:
 
     def _other_names(self, names: Mapping[str, Symbol]) -> Iterator[tuple[str, Symbol]]:
         """Yield what else names are called: ``omega`` for w, ``p_theta`` for p, and p for ``p_theta``."""
-        if "omega" not in self.kind.shapes:  # there it is the name of what is asked
-            yield from (
-                (f"omega{name[1:]}", symbol) for name, symbol in names.items() if _OF_OMEGA.fullmatch(name)
-            )
+        yield from (
+            (f"omega{name[1:]}", symbol) for name, symbol in names.items() if _OF_OMEGA.fullmatch(name)
+        )
         if not (self.is_names("q") and self.is_names("p")):
             return
         pairs = list(zip(self.words("q"), self.words("p"), strict=False))

@@ -25,6 +25,7 @@ __all__ = [
     "Label",
     "Quantity",
     "components_asked",
+    "has_primes",
     "is_asked",
     "is_definition",
     "is_of_another",
@@ -250,6 +251,17 @@ def _entries(said: str, inside: list[Token]) -> tuple[str, ...]:
     start, middle = inside[0].column - 1, commas[0].column
     end = len(said.rstrip()) - 1
     return said[start : middle - 1].strip(), said[middle:end].strip()
+
+
+def has_primes(text: str) -> bool:
+    """Tell whether a name has primes, which may tell it from another; a dot or d/dt says that it is a rate.
+
+    Examples
+    --------
+    >>> has_primes("H' = 1"), has_primes("dH/dt = 1")
+    (True, False)
+    """
+    return re.search("['′″]", text) is not None
 
 
 def is_definition(said: str, key: str, scope: Scope) -> bool:

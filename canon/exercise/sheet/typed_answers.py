@@ -24,6 +24,7 @@ from canon.exercise.sheet.left_sides import (
     Label,
     Quantity,
     components_asked,
+    has_primes,
     is_asked,
     is_of_another,
     label_of,
@@ -326,6 +327,9 @@ class _Plain:
         if asked.shown == "I" and label is not None and label.name and not label.rates:
             given = self.scope.declares(label.name) or isinstance(self.of.keys.get(label.name), str)
             asked = asked if given else Quantity("I", ((label.name, 0),))
+        rate = label is not None and label.rates > 0 and not has_primes(side.text)
+        if rate and asked.shown in OTHER_SPELLINGS:
+            return False  # dH/dt and Ḣ are no names of what H' is a name of
         return is_asked(label, asked, self.scope)
 
     def refuse_lagrangian(self, place: str, text: str, side: Side) -> None:

@@ -114,7 +114,7 @@ class Names:
     @cached_property
     def longest(self) -> int:
         """Length of the longest declared name."""
-        return max(map(len, (*self.scope.names, *self.scope.functions, self.scope.time.name)))
+        return max(map(len, self.scope.spelled))
 
     def declares(self, name: str) -> bool:
         """Whether a name is declared, as a symbol or a function."""

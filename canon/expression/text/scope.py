@@ -45,6 +45,8 @@ class Scope:
         Whether letters after a number are always factors, ``2 m``, never a unit.
     moving
         Names of what changes in time, besides coordinates and momenta.
+    other_names
+        What declared symbols are called besides; none of these names is declared.
 
     Examples
     --------
@@ -61,6 +63,7 @@ class Scope:
     signs: Mapping[str, Mapping[str, bool]] = field(default_factory=lambda: MappingProxyType({}))
     implicit: bool = False
     moving: frozenset[str] = frozenset()
+    other_names: Mapping[str, Symbol] = field(default_factory=lambda: MappingProxyType({}))
 
     def __hash__(self) -> int:
         return hash(
@@ -70,14 +73,15 @@ class Scope:
                 self.time,
                 self.implicit,
                 self.moving,
+                frozenset(self.other_names.items()),
             )
         )
 
     @cached_property
     def spelled(self) -> tuple[str, ...]:
         """All names that may be typed: declared ones, functions, and rates as ``theta_dot_1`` or ``theta_1_dot``."""
-        found = [*self.names, *self.functions, self.time.name]
-        for name, symbol in self.names.items():
+        found = [*self.names, *self.functions, self.time.name, *self.other_names]
+        for name, symbol in (*self.names.items(), *self.other_names.items()):
             if isinstance(symbol, Coordinate):
                 found += [f"{name}_dot", f"{name}_ddot"]
         return tuple(dict.fromkeys(found))
@@ -94,10 +98,11 @@ class Scope:
         if name == self.time.name:
             return self.time
         for ending, rate in (("_ddot", acceleration), ("_dot", velocity)):
-            base = self.names.get(name.removesuffix(ending))
+            stem = name.removesuffix(ending)
+            base = self.names.get(stem, self.other_names.get(stem))
             if name.endswith(ending) and isinstance(base, Coordinate):
                 return rate(base)
-        return None
+        return self.other_names.get(name)
 
     def declares(self, name: str) -> bool:
         """Tell whether a name stands for a declared symbol or a rate."""
@@ -124,8 +129,7 @@ class Scope:
         close = difflib.get_close_matches(name[:60], known, n=1, cutoff=0.75)
         if close:
             return f"is {close[0]} meant?"
-        own = [name for name, s in self.names.items() if s.name == name or s.name not in self.names]
-        named = [*own, *self.functions]
+        named = [*self.names, *self.functions]
         more = f" and {len(named) - _MAX_TOLD} more" if len(named) > _MAX_TOLD else ""
         return (
             f"the names here are {', '.join(named[:_MAX_TOLD])}{more}"

@@ -1,4 +1,4 @@
-"""Sampling loop: states, and what is watched between them, copied in one call, so that a sample costs its copy."""
+"""Sampling loop: states at many step numbers, and what is watched between them, copied in one call."""
 
 from __future__ import annotations
 
@@ -23,8 +23,6 @@ _PARAMETERS = ", ".join(
         "i64 %samples, i64 %blocks, i64 %y_bytes, i64 %e_bytes",
     )
 )
-
-
 _WATCHED = ", ".join(
     (
         "ptr %follow, ptr noalias %record, ptr noalias %fresh, ptr noalias %kept_records",

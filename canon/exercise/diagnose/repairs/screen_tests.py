@@ -63,13 +63,13 @@ def _screened(
     reading: Reading, test: Test, given: Sequence[Expr] = (), more: Sequence[Symbol] = ()
 ) -> Screened:
     """Return a test in which every name of a claim, the time and some more symbols have values."""
-    symbols = (*dict.fromkeys(reading.scope.names.values()), reading.time, *more)
+    symbols = (*reading.scope.names.values(), reading.time, *more)
     return Screened(test, symbols, reading.domain, tuple(given))
 
 
 def _on_the_map(reading: Reading, test: Test, given: Sequence[Expr] = ()) -> Screened:
     """Return a test in which the variables that a map gives have the values that follow."""
-    names = (*dict.fromkeys(reading.scope.names.values()), reading.time)
+    names = (*reading.scope.names.values(), reading.time)
     following = _dependent(reading)
     free = tuple(s for s in names if s not in following)
     return Screened(test, free, map_values(reading)[1], tuple(given))
