@@ -39,6 +39,7 @@ from .loaded_motion import load_motion as load_motion
 from .method.adaptive_methods import DOP853 as DOP853
 from .method.adaptive_methods import Taylor as Taylor
 from .method.constrained_method import Rattle as Rattle
+from .method.energy_keeping_method import AverageVectorField as AverageVectorField
 from .method.lie_poisson_splitting import LiePoissonSplitting as LiePoissonSplitting
 from .method.magnetic_methods import Boris as Boris
 from .method.magnetic_methods import MagneticSplitting as MagneticSplitting

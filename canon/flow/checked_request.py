@@ -16,6 +16,7 @@ from canon.array import all_finite
 from canon.expression.symbols.user_input import counted, given_expression
 from canon.flow.course import Course
 from canon.flow.fixed_step.fixed_steps import planned
+from canon.flow.method.energy_keeping_method import AverageVectorField
 from canon.flow.method.engine import FIXED_STEPS
 from canon.flow.method.method import TimeTransformed
 from canon.flow.method.method_text import method_of
@@ -125,6 +126,8 @@ def course_with(
         What makes the system that a time-transformed method integrates.
     """
     method = _with_tolerance(method_of(request.method), request.tolerance)
+    if isinstance(method, AverageVectorField):
+        method = method.on(system)
     extra = functions_by_name(request.observables)
     if "energy" in extra:
         raise ValueError(

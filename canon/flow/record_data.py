@@ -26,6 +26,7 @@ from canon.flow.equations.first_order_motion import Contact, Contacts, MovingSys
 from canon.flow.fixed_step.partial_step import LoopState
 from canon.flow.method.adaptive_methods import DOP853, Taylor
 from canon.flow.method.constrained_method import Rattle
+from canon.flow.method.energy_keeping_method import AverageVectorField
 from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
 from canon.flow.method.magnetic_methods import Boris, MagneticSplitting
 from canon.flow.method.method import RK4, Gauss, Splitting, TimeTransformed
@@ -60,7 +61,7 @@ _CLASSES: dict[str, Any] = {
         RunState, StepEnd, LoopState, Event, Crossing, Splitting, Gauss, RK4, Taylor, DOP853, TimeTransformed,
         SolvableSplitting, WisdomHolman, SABA, SBAB, Scheme, ExtendedPhaseSpace, SemiexplicitSplitting, Rattle,
         HolonomicSystem, LiePoissonSplitting, LiePoissonParts, PlaneTurns,
-        CommonTurn, TurningBlock, Boris, MagneticSplitting,
+        CommonTurn, TurningBlock, Boris, MagneticSplitting, AverageVectorField,
     )
 }  # fmt: skip
 

@@ -20,6 +20,7 @@ from canon import (
 )
 from canon.flow.method.composition import COMPOSITIONS
 from canon.flow.method.constrained_method import Rattle
+from canon.flow.method.energy_keeping_method import AverageVectorField
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS, HEYOKA, SCIPY
 from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
 from canon.flow.method.magnetic_methods import Boris, MagneticSplitting
@@ -46,6 +47,8 @@ NAMED = {
     "lie-poisson": LiePoissonSplitting(),
     **{f"boris-{order}": Boris(order) for order in COMPOSITIONS},
     **{f"magnetic-{order}": MagneticSplitting(order) for order in COMPOSITIONS},
+    **{f"avf-{order}": AverageVectorField(order) for order in range(2, 17, 2)},
+    "avf": AverageVectorField(),
     "boris": Boris(),
     "rattle": Rattle(),
     "gauss": Gauss(),
@@ -66,6 +69,8 @@ KINDS = [
     LiePoissonSplitting(6),
     Boris(4),
     MagneticSplitting(6),
+    AverageVectorField(4),
+    AverageVectorField(6, points=9, iteration="newton"),
     SemiexplicitSplitting(6),
     ExtendedPhaseSpace(4, omega=2.5),
     RK4(),
@@ -113,6 +118,10 @@ def test_the_words_of_a_method_name_it():
         SABA(5),
         SABA("8-6-4"),
         SBAB(2),
+        AverageVectorField(),
+        AverageVectorField(10, iteration="newton"),
+        AverageVectorField(4, points=8),
+        AverageVectorField(4, points=12, iteration="newton"),
         *TWO_COPIES,
     ):
         assert method_named(str(method)) == method

@@ -34,6 +34,9 @@ _AS_WIDE = {"single": "double", "compensated": "double", "double-double": "quad"
 
 _SLICES = 20
 
+_IN_LANES = "gauss", "average_vector_field"
+"""Families of methods whose stages lie in SIMD lanes, which extended numbers have none of."""
+
 _BITS = {"single": 23, "double": 52, "compensated": 52, "extended": 63, "double-double": 104}
 """With so many bits the numbers of a precision are rounded at worst."""
 
@@ -99,7 +102,9 @@ def _wider(task: Task) -> list[str]:
         return [given.name]
     # Extended numbers once more, as they may hold numbers that double-double does not.
     ready = EXTENDED.available() and given.number.mantissa <= EXTENDED.mantissa
-    return ["extended", "double-double"] if ready and task.method.family != "gauss" else ["double-double"]
+    return (
+        ["extended", "double-double"] if ready and task.method.family not in _IN_LANES else ["double-double"]
+    )
 
 
 def companions(

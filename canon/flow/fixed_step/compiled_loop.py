@@ -25,6 +25,7 @@ from canon.kernel.loops.splitting import splitting_loop
 from canon.kernel.magnetic.boris import boris_loop
 from canon.kernel.magnetic.gauge_shifts import gauge_shift_loop
 from canon.kernel.magnetic.magnetic_form import magnetic_form
+from canon.kernel.schemes.average_vector_field import average_coefficients
 from canon.kernel.schemes.gauss_tableau import gauss_coefficients
 from canon.kernel.schemes.perturbed_schemes import corrector
 from canon.kernel.schemes.splitting_schemes import SCHEMES
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from canon.flow.method.constrained_method import Rattle
+    from canon.flow.method.energy_keeping_method import AverageVectorField
     from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
     from canon.flow.method.magnetic_methods import Boris, MagneticSplitting
     from canon.flow.method.method import RK4, Gauss, Method, Splitting
@@ -83,7 +85,9 @@ def compiled_loop(system: HamiltonEquations, method: Method, precision: Precisio
     return _LOOPS[method.family](system, method, precision, orbits)
 
 
-def _gauss(system: HamiltonEquations, method: Gauss, precision: Precision, _orbits: int) -> Loop:
+def _gauss(
+    system: HamiltonEquations, method: Gauss | AverageVectorField, precision: Precision, _orbits: int
+) -> Loop:
     newton = method.iteration == "newton"
     return _kept_gauss(
         system, method.stages, precision.number, compensated=precision.compensated, newton=newton
@@ -193,6 +197,7 @@ _LOOPS: dict[str, Callable[[HamiltonEquations, Any, Precision, int], Loop]] = {
     "splitting": _splitting,
     "solvable": _solvable,
     "gauss": _gauss,
+    "average_vector_field": _gauss,
     "rk4": _runge_kutta,
     "extended_phase_space": _extended,
     "semiexplicit": _semiexplicit,
@@ -314,6 +319,10 @@ def _of_gauss(method: Gauss, number: MachineType, h: Fraction) -> list[Fraction]
     return gauss_coefficients(method.stages, h, number)
 
 
+def _of_average(method: AverageVectorField, number: MachineType, h: Fraction) -> list[Fraction]:
+    return average_coefficients(method.degree, method.stages, h, number)
+
+
 def _of_runge_kutta(_method: RK4, _number: MachineType, h: Fraction) -> list[Fraction]:
     return [h / 2, h / 6, h / 3]
 
@@ -349,6 +358,7 @@ def _of_semiexplicit(method: SemiexplicitSplitting, _number: MachineType, h: Fra
 _COEFFICIENTS: dict[str, Callable[[Any, MachineType, Fraction], list[Fraction]]] = {
     "splitting": _of_splitting,
     "gauss": _of_gauss,
+    "average_vector_field": _of_average,
     "rk4": _of_runge_kutta,
     "extended_phase_space": _of_extended,
     "semiexplicit": _of_semiexplicit,

@@ -1,6 +1,7 @@
 from .adaptive_methods import DOP853 as DOP853
 from .adaptive_methods import Taylor as Taylor
 from .constrained_method import Rattle as Rattle
+from .energy_keeping_method import AverageVectorField as AverageVectorField
 from .lie_poisson_splitting import LiePoissonSplitting as LiePoissonSplitting
 from .magnetic_methods import Boris as Boris
 from .magnetic_methods import MagneticSplitting as MagneticSplitting

@@ -17,11 +17,13 @@ from canon.cached_property import cached_property
 from canon.expression.symbols.user_input import counted
 from canon.flow.method.adaptive_methods import DOP853, Taylor
 from canon.flow.method.constrained_method import Rattle
+from canon.flow.method.energy_keeping_method import AverageVectorField
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS
 from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
 from canon.flow.method.magnetic_methods import Boris, MagneticSplitting
 from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
 from canon.flow.method.solvable_splitting import SolvableSplitting
+from canon.flow.method.stage_iteration import ITERATIONS, check_iteration
 from canon.kernel.schemes.gauss_tableau import HIGHEST_STAGES
 from canon.kernel.schemes.order_conditions import order
 from canon.kernel.schemes.splitting_schemes import SCHEMES, Scheme
@@ -33,7 +35,6 @@ if TYPE_CHECKING:
 
 __all__ = [
     "DOP853",
-    "ITERATIONS",
     "RK4",
     "FixedStep",
     "Gauss",
@@ -183,10 +184,6 @@ def _exact(x: Coefficient) -> Fraction:
     return Fraction(x)
 
 
-ITERATIONS = "fixed-point", "newton"
-"""How the stages of Gauss methods are found."""
-
-
 @dataclass(frozen=True, repr=False)
 class Gauss:
     """A Gauss–Legendre method: implicit, symplectic and symmetric for every Hamiltonian, of order 2s.
@@ -229,8 +226,7 @@ class Gauss:
     def __post_init__(self) -> None:
         if self.stages not in range(1, HIGHEST_STAGES + 1):
             raise ValueError(f"Gauss({self.stages}): the number of stages is 1 … {HIGHEST_STAGES}")
-        if self.iteration not in ITERATIONS:
-            raise ValueError(f"iteration={self.iteration!r}: there are {' and '.join(map(repr, ITERATIONS))}")
+        check_iteration(self.iteration)
 
     @property
     def _choice(self) -> dict[str, str]:
@@ -397,6 +393,7 @@ FixedStep = (
     | LiePoissonSplitting
     | Boris
     | MagneticSplitting
+    | AverageVectorField
 )
 """Methods that take steps of one size."""
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from canon.flow.method.adaptive_methods import DOP853, Taylor
 from canon.flow.method.composition import COMPOSITIONS
 from canon.flow.method.constrained_method import Rattle
+from canon.flow.method.energy_keeping_method import AverageVectorField
 from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
 from canon.flow.method.magnetic_methods import Boris, MagneticSplitting
 from canon.flow.method.method import RK4, Gauss, Method, Splitting, TimeTransformed
@@ -34,12 +35,19 @@ MethodGiven = Method | type[Method] | str
 _EIGHT = range(1, 9)
 """Stages of SABA and SBAB methods."""
 
+_AVERAGES = range(2, 2 * HIGHEST_STAGES + 1, 2)
+"""Orders of the average vector field methods."""
+
 _NUMBERED = re.compile(r"(gauss|saba|sbab)([0-9]{1,3})")
 
 _NEWTON = re.compile(r"gauss([0-9]{1,3})newton")
 
 _TAO = re.compile(
     r"\s*tao[-_ ]?([0-9]{1,3})[,;]?\s*omega\s*=?\s*([0-9.]{1,30}(?:e[-+]?[0-9]{1,3})?)\s*", re.IGNORECASE
+)
+
+_AVERAGE = re.compile(
+    r"\s*avf[-_ ]?([0-9]{1,3})(?:,?\s*points\s*=?\s*([0-9]{1,3}))?(?:[-,_ ]\s*(newton))?\s*", re.IGNORECASE
 )
 
 _RATIONAL = re.compile(r"[-+]?[0-9]{1,80}(?:\.[0-9]{0,80}|/[0-9]{1,80})?(?:[eE][-+]?[0-9]{1,2})?")
@@ -67,6 +75,8 @@ def _named() -> dict[str, Callable[[], Method]]:
         "boris": Boris,
         **{f"boris-{each}": partial(Boris, each) for each in COMPOSITIONS},
         **{f"magnetic-{each}": partial(MagneticSplitting, each) for each in COMPOSITIONS},
+        "avf": AverageVectorField,
+        **{f"avf-{each}": partial(AverageVectorField, each) for each in _AVERAGES},
         **{f"semiexplicit-{each}": partial(SemiexplicitSplitting, each) for each in COMPOSITIONS},
         "wisdom-holman": WisdomHolman,
         **{f"saba-{stages}": partial(SABA, stages) for stages in _EIGHT},
@@ -133,6 +143,11 @@ def method_named(name: str) -> Method:
         return Gauss(int(newton[1]), iteration="newton")
     if (tao := _TAO.fullmatch(name)) is not None:
         return ExtendedPhaseSpace(int(tao[1]), omega=float(tao[2]))
+    if (average := _AVERAGE.fullmatch(name)) is not None:
+        order, points, newton = average.groups()
+        return AverageVectorField(
+            int(order), int(points) if points else None, iteration=(newton or "fixed-point").lower()
+        )
     if (here := _ELSEWHERE.get(_folded(name))) is not None:
         raise ValueError(f"no method is called {name!r} here: {here}")
     spelled = {_folded(known): known for known in _named()}
@@ -143,7 +158,7 @@ def method_named(name: str) -> Method:
 
 def _those_there_are() -> str:
     composed = ("semiexplicit", "rattle", "lie-poisson", "boris", "magnetic")
-    ranges = (("gauss", 1, HIGHEST_STAGES), *((name, 2, 8) for name in composed))
+    ranges = (("gauss", 1, HIGHEST_STAGES), ("avf", 2, _AVERAGES[-1]), *((name, 2, 8) for name in composed))
     numbered = ", ".join(
         f"{name}-{a} … {name}-{b}" for name, a, b in (*ranges, ("saba", 1, 8), ("sbab", 1, 8))
     )
@@ -219,6 +234,8 @@ def method_from(written: Mapping[str, Any] | str) -> Method:
             return Gauss(stages)
         case {"gauss": int() as stages, "iteration": str() as iteration, **rest} if not rest:
             return Gauss(stages, iteration=iteration)
+        case {"average_vector_field": int() as order, **rest} if set(rest) <= {"points", "iteration"}:
+            return AverageVectorField(order, **rest)
         case {"rattle": int() as order, **rest} if not rest:
             return Rattle(order)
         case {"lie_poisson": int() as order, **rest} if not rest:
@@ -246,6 +263,7 @@ def method_from(written: Mapping[str, Any] | str) -> Method:
             raise ValueError(
                 f"no method is written {known}; there are names, {_those_there_are()}, and tables, "
                 "{ gauss = stages, iteration = name }, "
+                "{ average_vector_field = order, points = number, iteration = name }, "
                 "{ taylor = tolerance }, { dop853 = tolerance }, { time_transformed = splitting }, "
                 "{ splitting = { a, b } }, { semiexplicit = order }, { rattle = order }, { lie_poisson = order }, "
                 "{ boris = order }, { magnetic = order }, "

@@ -96,7 +96,7 @@ class DeviationRun:
 LEAST_SAMPLES = 32
 """Samples below which there is no verdict."""
 
-_CARRIED = ("splitting", "gauss", "rk4", "magnetic", "taylor", "dop853")
+_CARRIED = ("splitting", "gauss", "average_vector_field", "rk4", "magnetic", "taylor", "dop853")
 """Families of methods that carry deviations: their steps commute with differentiation."""
 
 _SPREAD, _GOLDEN = 0.8, 0.6180339887498949

@@ -7,6 +7,7 @@ import functools
 from typing import TYPE_CHECKING
 
 from canon.flow.fixed_step.compiled_loop import check_splitting
+from canon.flow.method.energy_keeping_method import AverageVectorField
 from canon.flow.method.method import Gauss, Splitting
 from canon.kernel.llvm.machine_code import simd_bytes
 from canon.kernel.loops.deviations import Deviations
@@ -60,7 +61,7 @@ def tangent_loop(
         )
     registers = simd_bytes() // number.alignment
     state, size = 2 * len(system.q), 2 * (len(system.q) - system.varying)
-    if isinstance(method, Gauss):
+    if isinstance(method, Gauss | AverageVectorField):
         kept = numbers_of_method(system, method.stages)
         deviations = Deviations(number, state, size, vectors, method=kept)
         newton = method.iteration == "newton"
@@ -81,7 +82,7 @@ def tangent_loop(
 
 def has_tangent_loop(method: Method) -> bool:
     """Tell whether the deviations of a method are compiled beside the orbit."""
-    return method.family in ("splitting", "gauss")
+    return method.family in ("splitting", "gauss", "average_vector_field")
 
 
 @functools.lru_cache(maxsize=_KEPT)

@@ -1,5 +1,8 @@
 """Gauss–Legendre methods: symplectic for every Hamiltonian, order 2s with s stages, implicit.
 
+With other numbers a_ij and b_j, which the loop reads, its steps are those of the average vector field methods, which
+keep the energy (:mod:`canon.kernel.schemes.average_vector_field`).
+
 The stages solve L_i = h b_i f(Y_i), Y_i = y + (e + Σ_j µ_ij L_j) with µ_ij = a_ij/b_j. A Runge–Kutta method is
 symplectic where µ_ij + µ_ji = 1, which the rounded µ fulfil exactly here; the iteration goes on until no
 component's change still decreases, then once more, so that what is left is round-off without a trend; the sum
@@ -45,8 +48,8 @@ _NEAR = 26
 """Changes below 2⁻²⁶ of the largest component are a Newton step's error of the factors that are kept then."""
 
 _STIFF = (
-    "the step is too large for the iteration; take a smaller one, Taylor(), or iteration='newton' in Gauss(…), where a "
-    "stiff part of H and not the motion asks for small steps"
+    "the step is too large for the iteration; take a smaller one, Taylor(), or the method with iteration='newton', "
+    "where a stiff part of H and not the motion asks for small steps"
 )
 _SINGULAR = "the step is too large for Newton's method; take a smaller one, or Taylor()"
 

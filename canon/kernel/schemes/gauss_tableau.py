@@ -19,7 +19,14 @@ from mpmath import MPContext
 from canon.expression.graph.number_systems import LONGDOUBLE
 from canon.kernel.llvm.number_types import DOUBLE, EXTENDED, MachineType, double_pair
 
-__all__ = ["HIGHEST_STAGES", "Tableau", "gauss_coefficients", "gauss_tableau", "lanes_for"]
+__all__ = [
+    "HIGHEST_STAGES",
+    "Tableau",
+    "coefficient_rows",
+    "gauss_coefficients",
+    "gauss_tableau",
+    "lanes_for",
+]
 
 HIGHEST_STAGES = 8
 
@@ -33,7 +40,7 @@ class Tableau:
     c, b
         Nodes and weights.
     mu
-        µ_ij = a_ij / b_j; µ_ij + µ_ji = 1.
+        µ_ij = a_ij / b_j; µ_ij + µ_ji = 1 in Gauss methods.
     prediction
         ν_ij: L_i of the next step is about Σ ν_ij L_j, the stages' polynomial continued.
     """
@@ -99,13 +106,24 @@ def gauss_coefficients(stages: int, h: Fraction, number: MachineType = DOUBLE) -
         for j in range(i):
             mu[i][j] = rounded(tableau.mu[i][j])
             mu[j][i] = 1 - mu[i][j]
+    return coefficient_rows(tableau, mu, h, number)
+
+
+def coefficient_rows(
+    tableau: Tableau, mu: list[list[Fraction]], h: Fraction, number: MachineType
+) -> list[Fraction]:
+    """Return h b, h c, the columns of a µ that is rounded already, the columns of ν, padded to lanes."""
+
+    def rounded(value: Fraction) -> Fraction:
+        return _rounded(value, number)
+
     rows = [
         [rounded(h * b) for b in tableau.b],
         [rounded(h * c) for c in tableau.c],
         *map(list, zip(*mu, strict=True)),
         *([rounded(x) for x in column] for column in zip(*tableau.prediction, strict=True)),
     ]
-    empty = [Fraction(0)] * (lanes_for(stages) - stages)
+    empty = [Fraction(0)] * (lanes_for(len(mu)) - len(mu))
     return [x for row in rows for x in (*row, *empty)]
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from canon.display import preformatted
+from canon.flow.method.energy_keeping_method import AverageVectorField
 from canon.flow.method.engine import FICTITIOUS_TIME
 from canon.flow.method.method_text import method_of
 from canon.flow.propagation import propagate
@@ -221,7 +222,8 @@ def choose(
     Raises
     ------
     StudyError
-        Where the request makes no sense, or the motion can't be followed at all.
+        Where the request makes no sense, or the motion can't be followed at all; where by the energy methods are to be
+        considered that keep it at every step.
 
     Examples
     --------
@@ -246,6 +248,8 @@ def choose(
             f"{', '.join(map(str, considered))}: made for Hamiltonians, which {subject.title} is not; "
             "Taylor, DOP853, RK4 and Gauss apply"
         )
+    if integral is None and observable == "energy":
+        _check_energy_tells(considered)
     natural = natural_step(question)
     require_energy(question)
     pilot_span = min(span, PILOT_STEPS * natural)
@@ -265,6 +269,16 @@ def choose(
     ordered = sorted(found, key=lambda each: (not each.keeps, each.predicted_cost))
     title = subject.system.title if isinstance(subject.system, Scene) else subject.title
     return Choice(title, span, accuracy, observable, chosen, tuple(ordered), question, outlook)
+
+
+def _check_energy_tells(considered: tuple[Method, ...]) -> None:
+    """Refuse to choose by the energy among methods that keep it whatever they do else."""
+    keeping = [str(method) for method in considered if isinstance(method, AverageVectorField)]
+    if keeping:
+        raise StudyError(
+            f"{', '.join(keeping)}: the energy is kept at every step, so that its error says nothing of the motion; "
+            "choose by observable='position', or by another integral"
+        )
 
 
 def _knob_of(chosen: Candidate) -> str:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from canon.flow.method.energy_keeping_method import AverageVectorField
 from canon.flow.method.engine import FICTITIOUS_TIME, SCIPY
+from canon.flow.method.method import Gauss
 from canon.flow.method.setting import Setting
 from canon.study.method_choice.candidate import (
     HOPELESS,
@@ -227,8 +229,9 @@ def _first_step(method: Method, natural: float, accuracy: float, span: float) ->
 
 def widest_step(method: Method, natural: float) -> float:
     """Return the step that a method of that many stages may take where accuracy does not matter, about."""
-    grown = GAUSS_STAGES_A_STEP if method.family == "gauss" else STAGES_A_STEP
-    return natural * (0.5 + method.stages / grown)
+    if isinstance(method, Gauss | AverageVectorField):  # the latter's further points make no step wider
+        return natural * (0.5 + method.order / 2 / GAUSS_STAGES_A_STEP)
+    return natural * (0.5 + method.stages / STAGES_A_STEP)
 
 
 def _next_knob(
