@@ -4,17 +4,14 @@ import numpy as np
 import pytest
 
 from canon.flow.geometry.flow_jacobian import flow_jacobian
-from canon.flow.geometry.kepler_derivative import kepler_derivative
-from canon.flow.geometry.solvable_jacobian import _step
-from canon.flow.integrate import integrate
 from canon.flow.method.method import Splitting
-from canon.flow.method.solvable_splitting import SABA, SBAB, SolvableSplitting, WisdomHolman
+from canon.flow.method.solvable_splitting import SABA, SBAB, WisdomHolman
 from canon.flow.propagation import propagate
-from canon.flow.request import Request
-from canon.flow.system_request import any_task
-from canon.kernel.solvable.solvable_parts import named_part, solvable_part
+from canon.flow.run.non_finite_state import NonFiniteStateError
+from canon.flow.tangent.compiled_deviations import CompiledDeviations
 from tests.flow.systems import HENON_HEILES, HENON_HEILES_START, KEPLER, System, kepler_start
 from tests.flow.test_solvable import planets, planets_start
+from tests.flow.test_tangent_maps import task_of
 
 x, y = KEPLER.q
 SOLAR, MASSES = planets("0.01")
@@ -28,6 +25,7 @@ CASES = [
     (SOLAR, SOLAR_START, SABA("10-6-4")),
     (SOLAR, SOLAR_START, SBAB(3)),
     (SOLAR, SOLAR_START, SABA(2, commutator=True)),
+    (SOLAR, SOLAR_START, WisdomHolman(coordinates="democratic-heliocentric")),
     (TIDE, kepler_start(0.3), SABA(3)),
     (TIDE, kepler_start(0.3), SABA(3, commutator=True)),
     (TIDE, kepler_start(0.3), Splitting("blanes-moan-4", parts=PARTS)),
@@ -68,21 +66,48 @@ def test_it_is_symplectic_to_round_off_at_coarse_steps(system, start, method):
     assert found.symplecticity_defect.max() < 300 * 2.0**-53 * abs(found.M).max() ** 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("system", "start", "method"), CASES, ids=NAMES)
-def test_its_steps_are_those_of_the_compiled_loop(system, start, method):
-    task, _ = any_task(Request(system, (0, 2), start, method=method, step=0.25, samples=8))
-    own = method
-    if isinstance(method, Splitting):
-        own = SolvableSplitting(method.scheme, parts=method.parts)
-    part = named_part(task.system, *own.parts) if own.parts else solvable_part(task.system)
-    states, delta = (
-        integrate(task).y[:, :, 0],
-        np.broadcast_to(np.eye(len(start)), (8, len(start), len(start))),
-    )
-    moved = states[:, :-1]
-    for move in _step(task.system, part, own, task.plan.h).moves:
-        moved, delta = move(moved, delta)
-    np.testing.assert_allclose(moved, states[:, 1:], atol=2e-14)
+@pytest.mark.parametrize(("precision", "bits"), [("extended", 64), ("double-double", 104)])
+def test_it_is_known_and_symplectic_in_wider_numbers_too(system, start, method, precision, bits):
+    how = {"method": method, "step": 0.25}
+    found = flow_jacobian(system, (0, 10), start, precision=precision, **how)
+    narrow = flow_jacobian(system, (0, 10), start, **how)
+    size, unit = abs(found.final).max(), 2.0**-bits
+    assert abs(narrow.final - found.final).max() < 1e-12 * size
+    assert found.symplecticity_defect[-1] < 1000 * unit * size**2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("system", "start", "method"), CASES, ids=NAMES)
+def test_differences_in_double_double_agree_with_it_and_not_with_another(system, start, method):
+    how, small, slopes = {"method": method, "step": 0.25}, 2.0**-28, np.empty((len(start), len(start)))
+    for k in range(len(start)):
+        ends = []
+        for sign in (1, -1):
+            y0 = np.array(start, dtype=np.longdouble)
+            y0[k] += sign * small
+            end = propagate(system, (0, 2), y0, precision="double-double", samples=1, **how)
+            ends.append((end.y[:, -1], end.carried[:, -1]))
+        (a, b), (c, d) = ends
+        slopes[:, k] = ((a - c) + (b - d)) / (2 * small)
+    found = flow_jacobian(system, (0, 2), start, **how).final
+    # The third derivative along light planets' momenta is large: p stands with 1/m.
+    np.testing.assert_allclose(found, slopes, atol=1e-9 * abs(slopes).max())
+    coarser = flow_jacobian(system, (0, 2), start, method=method, step=1.0).final
+    assert abs(coarser - slopes).max() > 30 * abs(found - slopes).max()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("system", "start", "method"), CASES, ids=NAMES)
+def test_the_orbit_beside_deviations_is_the_one_without(system, start, method):
+    task = task_of(system, start, method, 0.25, span=10.0)
+    going = CompiledDeviations(task, np.eye(len(start)), orthogonal=True)
+    for _ in task.plan.stops[1:]:
+        going.advance()
+    motion = propagate(system, (0, 10), start, method=method, step=0.25, samples=40)
+    np.testing.assert_array_equal(going.states()[:, 0], motion.y[:, -1])
+    np.testing.assert_array_equal(going.buffers.states()[1][:, 0], motion.carried[:, -1])
 
 
 def test_a_coarse_map_s_is_not_the_flow_s_and_a_fine_one_s_is():
@@ -118,43 +143,16 @@ def test_many_steps_go_in_blocks():
     assert found.symplecticity_defect[-1] < 1e-13 * abs(found.final).max() ** 2
 
 
-@pytest.mark.parametrize("t", [0.01, -2.0, 7.0, 40.0])
-def test_kepler_s_flow_for_ellipses_and_hyperbolas(t):
-    rng = np.random.default_rng(1)
-    places, velocities = rng.normal(size=(2, 3, 500))
-    moved, turned, M = kepler_derivative(places, velocities, 1.0, t)
-    J = np.kron([[0, 1], [-1, 0]], np.eye(3))
-    defect = np.einsum("jik,jl,lmk->imk", M, J, M) - J[:, :, np.newaxis]
-    size = abs(M).max(axis=(0, 1))
-    assert (abs(defect).max(axis=(0, 1)) < 2e-13 * size**2).all()
-    back = kepler_derivative(moved, turned, 1.0, -t)
-    np.testing.assert_allclose(np.vstack(back[:2]), np.vstack([places, velocities]), atol=1e-9)
-    if abs(t) < 10:  # over long times what rounds the state after t turns the way back
-        inverse = np.einsum("ijk,jlk->ilk", back[2], M)
-        assert (abs(inverse - np.eye(6)[:, :, np.newaxis]).max(axis=(0, 1)) < 1e-12 * size**2).all()
-
-
-def test_kepler_s_derivative_about_a_circle():
-    # Hill's equations in the turning frame, solved by Clohessy and Wiltshire (1960), after a quarter of a period.
-    *_, M = kepler_derivative(np.array([[1.0], [0.0]]), np.array([[0.0], [1.0]]), 1.0, np.pi / 2)
-    hill = np.array(
-        [
-            [4.0, 0.0, 1.0, 2.0],
-            [6 - 3 * np.pi, 1.0, -2.0, 4 - 3 * np.pi / 2],
-            [3.0, 0.0, 0.0, 2.0],
-            [-6.0, 0.0, -2.0, -3.0],
-        ]
+def test_neighbours_that_part_beyond_doubles_are_told_in_stretches():
+    saddle = System(
+        x.momentum**2 / 2 + y.momentum**2 / 2 - 2 * x * x - y * y + x**4 / 1000, KEPLER.q, KEPLER.p
     )
-    spin, none = np.array([[0.0, -1.0], [1.0, 0.0]]), np.zeros((2, 2))
-    # x = R ξ, v = R (ξ' + ω × ξ), R the identity at the start and a quarter turn at the end.
-    into = np.block([[np.eye(2), none], [-spin, np.eye(2)]])
-    out = np.block([[spin, none], [spin @ spin, spin]])
-    np.testing.assert_allclose(M[:, :, 0], out @ hill @ into, atol=1e-14)
+    found = flow_jacobian(saddle, (0, 400), [0.0, 0.0, 0.0, 0.0], method=WisdomHolman(), step=0.1)
+    assert found.exponent[-1] > 1023
+    assert found.log_size[-1] == pytest.approx(800 + np.log(0.5 * 2), abs=1e-9)
 
 
-def test_what_is_not_known_is_refused():
-    with pytest.raises(ArithmeticError, match="not solved"):
-        kepler_derivative(np.array([[np.nan], [0.0]]), np.array([[0.0], [1.0]]), 1.0, 1.0)
-    heliocentric = WisdomHolman(coordinates="democratic-heliocentric")
-    with pytest.raises(ValueError, match="kicks depend on momenta"):
-        flow_jacobian(SOLAR, (0, 1), SOLAR_START, method=heliocentric, step=0.25)
+def test_an_orbit_that_leaves_the_finite_numbers_is_told():
+    falling = System(x.momentum**2 / 2 + y.momentum**2 / 2 - x**4, KEPLER.q, KEPLER.p)
+    with pytest.raises(NonFiniteStateError, match="stops being finite"):
+        flow_jacobian(falling, (0, 50), [1.0, 0.0, 1.0, 0.0], method=WisdomHolman(), step=0.1)

@@ -19,8 +19,8 @@ def compiled(lanes, axes, number=DOUBLE):
     w = Writer(number)
     v = w.side_by_side(lanes)
     x, u = ([v.load("%y", part * axes + axis) for axis in range(axes)] for part in (0, 1))
-    moved, turned = kepler_flow(w, v, x, u, v.load("%m", 0), v.splat(w.load("%t", 0)))
-    for i, value in enumerate((*moved, *turned)):
+    motion = kepler_flow(w, v, x, u, v.load("%m", 0), v.splat(w.load("%t", 0)))
+    for i, value in enumerate((*motion.moved, *motion.turned)):
         v.store(value, "%out", i)
     names = ", ".join(f"ptr noalias %{name}" for name in ("y", "m", "t", "out"))
     return compiled_function(w, "flow", names, (ctypes.c_void_p,) * 4)

@@ -197,4 +197,5 @@ def _one_deviation(run: DeviationRun, deviation: npt.ArrayLike | None, seed: int
     frame = random_vectors(size, 1, seed) if deviation is None else given_frame(deviation, size)
     if frame.shape[1] != 1:
         raise ValueError(f"deviation: {frame.shape[1]} vectors; give one vector, shape ({size},)")
-    return deviation_growth(task, frame, orthogonal=False, progress=run.progress)
+    given = deviation is not None
+    return deviation_growth(task, frame, orthogonal=False, given=given, progress=run.progress)

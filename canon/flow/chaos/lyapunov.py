@@ -121,9 +121,10 @@ def lyapunov_spectrum(
 ) -> LyapunovSpectrum:
     """Return the Lyapunov exponents of an orbit: the mean rates at which deviations from it grow.
 
-    Of splittings and Gauss methods deviations are moved by the exact derivative of each step, compiled beside the
-    orbit, which is the one that :func:`canon.propagate` gives bit for bit; every so many steps they are made
-    orthonormal again, as often as their digits ask for. Other methods carry them as part of a larger system.
+    Of splittings, those by solvable parts included, and of Gauss methods deviations are moved by the exact derivative
+    of each step, compiled beside the orbit, which is the one that :func:`canon.propagate` gives bit for bit; every so
+    many steps they are made orthonormal again, as often as their digits ask for. Other methods carry them as part of a
+    larger system.
 
     Parameters
     ----------
@@ -152,7 +153,8 @@ def lyapunov_spectrum(
     Notes
     -----
     Exponents do not depend on units, but how soon they are reached does: take units in which coordinates and momenta
-    are of one size. λ₁ of a regular orbit comes to 0 as ln T/T.
+    are of one size. Splittings by solvable parts measure lengths in √m q and p/√m, in which light planets are. λ₁ of a
+    regular orbit comes to 0 as ln T/T.
 
     References
     ----------

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from canon.kernel.llvm.number_types import MachineType
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["check_splitting", "compiled_loop", "steps_between"]
+__all__ = ["check_splitting", "compiled_loop", "loop_by_solvable_parts", "steps_between"]
 
 _KEPT = 64
 """Compiled loops kept for the next call."""
@@ -181,6 +181,31 @@ def _splitting(system: HamiltonEquations, method: Splitting, precision: Precisio
 def _solvable(
     system: HamiltonEquations, method: Splitting | SolvableSplitting, precision: Precision, _orbits: int
 ) -> Loop:
+    assert method.solvable is not None
+    return loop_by_solvable_parts(system, method.solvable, precision)
+
+
+def loop_by_solvable_parts(
+    system: HamiltonEquations,
+    method: SolvableSplitting,
+    precision: Precision,
+    vectors: int = 0,
+    units: tuple[Fraction, ...] = (),
+) -> Loop:
+    """Return the machine code of a splitting by solvable parts, with so many deviations beside each orbit.
+
+    Parameters
+    ----------
+    system, method, precision
+        What to integrate, how, and in which numbers.
+    vectors, units
+        Deviations of each orbit, the last numbers in e, and what their components are multiplied with there.
+
+    Raises
+    ------
+    UnsolvableError
+        H has no such parts, depends on t, or has parameters that differ by orbit.
+    """
     if not system.autonomous:
         raise UnsolvableError(
             "H depends on t: splittings by solvable parts are for H(q, p); use Splitting('kahan-li-8')"
@@ -189,8 +214,7 @@ def _solvable(
         raise UnsolvableError(
             "parameters that differ by orbit: splittings by solvable parts take one number for each"
         )
-    assert method.solvable is not None
-    return _kept_solvable(system, method.solvable, precision)
+    return _kept_solvable(system, method, precision, vectors, units)
 
 
 _LOOPS: dict[str, Callable[[HamiltonEquations, Any, Precision, int], Loop]] = {
@@ -278,7 +302,13 @@ def _kept_magnetic(
 
 
 @functools.lru_cache(maxsize=64)
-def _kept_solvable(system: HamiltonEquations, method: SolvableSplitting, precision: Precision) -> Loop:
+def _kept_solvable(
+    system: HamiltonEquations,
+    method: SolvableSplitting,
+    precision: Precision,
+    vectors: int,
+    units: tuple[Fraction, ...],
+) -> Loop:
     part = solvable_part(system) if method.parts is None else named_part(system, *method.parts)
     if isinstance(part, Planets | Centres) and len({len(body) for body in part.bodies}) > 1:
         raise UnsolvableError(
@@ -298,6 +328,8 @@ def _kept_solvable(system: HamiltonEquations, method: SolvableSplitting, precisi
         compensated=precision.compensated,
         number=precision.number,
         democratic=democratic,
+        vectors=vectors,
+        units=units,
     )
 
 

@@ -144,8 +144,8 @@ def flow_jacobian(
     Raises
     ------
     ValueError
-        As ``propagate``; or the planets' coordinates are democratic heliocentric ones, or several states or parameters
-        by orbit are given; or the motion stays on a kink or is refracted there.
+        As ``propagate``; or several states or parameters by orbit are given; or the motion stays on a kink or is
+        refracted there.
 
     Examples
     --------
@@ -173,9 +173,6 @@ def flow_jacobian(
         given = opened(cast("Any", system), y0, parameters or {}) if is_scene(system) else None
         frame, values = (system, parameters or {}) if given is None else (given.system, given.parameters)
         return FlowJacobian(*transformed_jacobian(task, cast("HamiltonianSystem", frame), values))
-    if task.method.solvable is not None:
-        t, motion, slopes = solvable_jacobian(task)
-        return FlowJacobian(t, motion, slopes, np.zeros_like(slopes))
     rows = slice(None) if moving is None else task.system.rows
     try:
         with np.errstate(over="ignore", invalid="ignore"):
@@ -191,6 +188,8 @@ def flow_jacobian(
 
 def _with_variations(task: Task, moving: MovingSystem | None) -> tuple[Array, Array, Array, Array]:
     """Return times, motion, Jacobians and what they are beyond doubles, of all that is integrated."""
+    if task.method.solvable is not None:
+        return solvable_jacobian(task)
     size = len(task.states[0])
     # What is integrated along unseen depends on the start too, and is shown here on the way only.
     whole = task.system if moving is None else replace(task.system, varying=0, spare=0)

@@ -12,6 +12,7 @@ from canon.flow.fixed_step.partial_step import coefficient_pairs
 from canon.flow.method.number_formats import fixed_precision
 from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 from canon.flow.tangent.tangent_loop import tangent_loop
+from canon.kernel.llvm.number_types import DOUBLE
 from canon.kernel.loops.renormalising_loop import renormalising_function
 
 if TYPE_CHECKING:
@@ -41,18 +42,36 @@ class CompiledDeviations:
     task
         The motion, by a method that has a tangent loop.
     frame
-        The deviations at the start, shape (2n, vectors).
+        The deviations at the start, shape (2n, vectors): of the coordinates that lengths are measured in, as the
+        tangent loop has them, or of (q, p) where they are given.
     orthogonal
         Whether they are kept orthonormal; else each keeps its own direction and gets the length 1.
     orbits
         Which of the task's orbits; filled up to whole blocks.
+    given
+        Whether they are of (q, p).
+
+    Raises
+    ------
+    ValueError
+        The numbers are no doubles; or H does not split.
     """
 
     def __init__(
-        self, task: Task, frame: Array, *, orthogonal: bool, orbits: npt.NDArray[Any] | None = None
+        self,
+        task: Task,
+        frame: Array,
+        *,
+        orthogonal: bool,
+        orbits: npt.NDArray[Any] | None = None,
+        given: bool = False,
     ) -> None:
         many = task.states[0].shape[1]
         precision = fixed_precision(task.precision)
+        if precision.number != DOUBLE:
+            raise ValueError(
+                f"precision={precision.name!r}: deviations are moved in doubles; leave precision out, or 'double'"
+            )
         self.tangent = tangent_loop(task.system, task.method, precision, frame.shape[1], many)
         assert task.plan.h is not None
         loop, deviations = self.tangent.loop, self.tangent.deviations
@@ -64,6 +83,9 @@ class CompiledDeviations:
         )
         high, low = (part[:, filled] for part in task.states)
         self.buffers = LoopBuffers(loop, high, low, pairs)
+        if given and self.tangent.units:
+            frame = frame * np.array(self.tangent.units)[:, np.newaxis]
+            frame = frame / np.linalg.norm(frame, axis=0)
         self._behind(self.buffers.e)[:] = self._packed(frame)
         self.rows = task.system.rows
         self.renormalise = renormalising_function(deviations, orthogonal=orthogonal)

@@ -96,7 +96,7 @@ class DeviationRun:
 LEAST_SAMPLES = 32
 """Samples below which there is no verdict."""
 
-_CARRIED = ("splitting", "gauss", "average_vector_field", "rk4", "magnetic", "taylor", "dop853")
+_CARRIED = ("splitting", "solvable", "gauss", "average_vector_field", "rk4", "magnetic", "taylor", "dop853")
 """Families of methods that carry deviations: their steps commute with differentiation."""
 
 _SPREAD, _GOLDEN = 0.8, 0.6180339887498949
@@ -182,6 +182,7 @@ def deviation_growth(
     *,
     orthogonal: bool,
     note: Callable[[Array], Array] | None = None,
+    given: bool = False,
     progress: Callable[[float], None] | bool | None = None,
 ) -> DeviationGrowth:
     """Return how deviations grow along the motion of a task.
@@ -196,6 +197,8 @@ def deviation_growth(
         Whether they are kept orthonormal.
     note
         What to note of the deviations at each sample, from shape (2n, vectors, orbits) to (orbits,).
+    given
+        Whether the frame is of (q, p), rather than of the coordinates that lengths are measured in.
     progress
         As :func:`canon.propagate` takes it.
 
@@ -208,7 +211,7 @@ def deviation_growth(
     parts = np.array_split(np.arange(count), min(os.cpu_count() or 1, -(-count // _LEAST)))
     made = CompiledDeviations if has_tangent_loop(task.method) else VariationalDeviations
     # One after the other, so that a loop is compiled once.
-    going = [made(task, frame, orthogonal=orthogonal, orbits=orbits) for orbits in parts]
+    going = [made(task, frame, orthogonal=orthogonal, orbits=orbits, given=given) for orbits in parts]
     done, stopped = [0.0] * len(parts), threading.Event()
     with reporting(progress) as report:
 

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import math
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from canon.flow.fixed_step.compiled_loop import check_splitting
+from canon.flow.fixed_step.compiled_loop import check_splitting, loop_by_solvable_parts
 from canon.flow.method.energy_keeping_method import AverageVectorField
 from canon.flow.method.method import Gauss, Splitting
 from canon.kernel.llvm.machine_code import simd_bytes
 from canon.kernel.loops.deviations import Deviations
 from canon.kernel.loops.tangent_gauss import numbers_of_method, tangent_gauss_loop
 from canon.kernel.loops.tangent_splitting import tangent_splitting_loop
+from canon.kernel.program.program import exact_value
 
 if TYPE_CHECKING:
     from canon.flow.method.method import Method
@@ -31,10 +34,20 @@ _INTERLEAVED = 4
 
 @dataclasses.dataclass(frozen=True)
 class TangentLoop:
-    """A compiled loop, and how the deviations lie in what it works on."""
+    """A compiled loop, and how the deviations lie in what it works on.
+
+    Parameters
+    ----------
+    loop, deviations
+        The loop, and its deviations.
+    units
+        What each component of a deviation of (q, p) is multiplied with there, shape (2n,): lengths are those of what
+        comes out. Empty where it is the deviation of (q, p) itself.
+    """
 
     loop: Loop
     deviations: Deviations
+    units: tuple[float, ...] = ()
 
 
 def tangent_loop(
@@ -52,13 +65,9 @@ def tangent_loop(
     Raises
     ------
     ValueError
-        The numbers are no doubles; or H does not split.
+        H does not split.
     """
     number = precision.number
-    if number.scalar != "double" or number.pair:
-        raise ValueError(
-            f"precision={precision.name!r}: deviations are moved in doubles; leave precision out, or 'double'"
-        )
     registers = simd_bytes() // number.alignment
     state, size = 2 * len(system.q), 2 * (len(system.q) - system.varying)
     if isinstance(method, Gauss | AverageVectorField):
@@ -67,6 +76,13 @@ def tangent_loop(
         newton = method.iteration == "newton"
         return _kept_gauss(
             system, method.stages, deviations, compensated=precision.compensated, newton=newton
+        )
+    if method.solvable is not None:
+        units = _mass_weights(system)
+        loop = loop_by_solvable_parts(system, method.solvable, precision, vectors, units)
+        own = loop.carry - state - size * vectors
+        return TangentLoop(
+            loop, Deviations(number, state, size, vectors, method=own), tuple(map(float, units))
         )
     if orbits > 1:
         number, lanes = dataclasses.replace(number, lanes=registers * _INTERLEAVED), 1
@@ -82,7 +98,21 @@ def tangent_loop(
 
 def has_tangent_loop(method: Method) -> bool:
     """Tell whether the deviations of a method are compiled beside the orbit."""
-    return method.family in ("splitting", "gauss", "average_vector_field")
+    return method.family in ("splitting", "solvable", "gauss", "average_vector_field")
+
+
+def _mass_weights(system: HamiltonEquations) -> tuple[Fraction, ...]:
+    """Return √m for δq and 1/√m for δp, rounded to powers of 2: δq and δp of light planets are of one size so.
+
+    To multiply with them is a symplectic map. Where p is of no constant mass they are 1.
+    """
+    graph, weights = system.graph, list[Fraction]()
+    for velocity, p in zip(system.velocity, system.p, strict=True):
+        (inverse,) = graph.gradient(velocity, [p])
+        known = exact_value(graph, inverse) if graph.is_constant(inverse) else Fraction(1)
+        half = round(-math.log2(known) / 2) if known > 0 else 0
+        weights.append(Fraction(2) ** half)
+    return (*weights, *(1 / weight for weight in weights))
 
 
 @functools.lru_cache(maxsize=_KEPT)

@@ -44,11 +44,20 @@ class VariationalDeviations:
         Whether they are kept orthonormal; else each keeps its own direction and gets the length 1.
     orbits
         Which of the task's orbits.
+    given
+        Whether the deviations are of (q, p), as they are here in any case.
     """
 
     def __init__(
-        self, task: Task, frame: Array, *, orthogonal: bool, orbits: npt.NDArray[Any] | None = None
+        self,
+        task: Task,
+        frame: Array,
+        *,
+        orthogonal: bool,
+        orbits: npt.NDArray[Any] | None = None,
+        given: bool = False,
     ) -> None:
+        del given  # lengths are those of (q, p)
         self.task, self.orthogonal = task, orthogonal
         self.larger = variational(task.system, frame.shape[1])
         self.taylor = TaylorStretches.of(task, self.larger)

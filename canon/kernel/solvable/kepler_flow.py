@@ -12,6 +12,7 @@ gravitational simulations, Mon. Not. R. Astron. Soc. 452 (2015) 376–388, doi:1
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from canon.kernel.llvm.formulas import LaneFormulas
@@ -28,13 +29,44 @@ if TYPE_CHECKING:
 
     from canon.kernel.llvm.writer import Writer
 
-__all__ = ["kepler_flow"]
+__all__ = ["KeplerMotion", "kepler_flow"]
 
 
-def kepler_flow(
-    w: Writer, v: Writer, x: Sequence[str], u: Sequence[str], mu: str, t: str
-) -> tuple[list[str], list[str]]:
-    """Write the motion of bodies about fixed centres and return the increments of places and velocities.
+@dataclass(frozen=True)
+class KeplerMotion:
+    """Kepler's motion after a time: registers, one lane for each body.
+
+    Parameters
+    ----------
+    moved, turned
+        The increments of places and velocities.
+    factors
+        f − 1, g, ḟ and ġ − 1 with x = f x₀ + g v₀ and v = ḟ x₀ + ġ v₀.
+    orbit
+        What Kepler's equation read; its η and t are those of motion forward in time.
+    forward
+        1 or −1: the sign of t.
+    anomaly, g
+        X, and G₁, G₂, G₃.
+    near
+        1/r.
+    whole
+        The whole number of periods that was taken from the time, as a time.
+    """
+
+    moved: list[str]
+    turned: list[str]
+    factors: tuple[str, str, str, str]
+    orbit: KeplerOrbit
+    forward: str
+    anomaly: str
+    g: tuple[str, str, str]
+    near: str
+    whole: str
+
+
+def kepler_flow(w: Writer, v: Writer, x: Sequence[str], u: Sequence[str], mu: str, t: str) -> KeplerMotion:
+    """Write the motion of bodies about fixed centres.
 
     Parameters
     ----------
@@ -54,7 +86,7 @@ def kepler_flow(
     speed2, along = c.dot(u, u), c.dot(x, u)
     beta = c.sub(c.add(pull, pull), speed2)
     zeta = c.fma(c.neg(beta), r0, mu)
-    t = _within_half_a_period(w, v, mu, beta, t)
+    given, t = t, _within_half_a_period(w, v, mu, beta, t)
     forward = c.select(c.less(t, c.zero), c.neg(c.one), c.one)
     orbit = KeplerOrbit(r0, near, c.mul(along, forward), speed2, beta, zeta, mu, pull, c.abs(t))
     anomaly, g2, g3 = universal_anomaly(w, v, orbit)
@@ -66,7 +98,8 @@ def kepler_flow(
     f_rate = c.neg(c.mul(c.mul(c.mul(pull, forward), g1), per_r))
     g_rate = c.neg(c.mul(c.mul(mu, g2), per_r))
     turned = [c.fma(f_rate, a, c.mul(g_rate, b)) for a, b in zip(x, u, strict=True)]
-    return moved, turned
+    factors, whole = (f, g, f_rate, g_rate), c.sub(given, t)
+    return KeplerMotion(moved, turned, factors, orbit, forward, anomaly, (g1, g2, g3), per_r, whole)
 
 
 def _within_half_a_period(w: Writer, v: Writer, mu: str, beta: str, t: str) -> str:

@@ -12,9 +12,13 @@ from canon.kernel.llvm.number_types import DOUBLE, DOUBLE_DOUBLE
 from canon.kernel.solvable.kepler_flow import kepler_flow
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from canon.kernel.llvm.writer import Writer
+    from canon.kernel.solvable.kepler_flow import KeplerMotion
+
+    Derivative = Callable[[list[str], list[str]], tuple[list[str], list[str]]]
+    """What moves a deviation, δx and δv along each axis."""
 
 __all__ = ["BodyLanes", "StepLengths"]
 
@@ -73,6 +77,8 @@ class BodyLanes:
         self.words = rows * self.lanes + extra
         self.state = w.array(self.words)
         self.extra = w.at(self.state, rows * self.lanes)
+        self.numbers_beside = 0
+        """Numbers of a deviation beside those of the bodies."""
         self.mu = self.c.numbers(self.filled(mu))
 
     def filled(self, values: Sequence[Fraction], other: Fraction | None = None) -> list[Fraction]:
@@ -85,12 +91,31 @@ class BodyLanes:
         """Write a kick and then Kepler's motion of all bodies; ``pair`` is the number of the two in the tables."""
         del pair
         x, u = self.kicked(self.rows(self.places), self.rows(self.velocities), times)
-        moved, turned = kepler_flow(self.w, self.v, x, u, self.mu, self.v.splat(times.flow))
-        self.increased(self.places, x, self.c.one, moved)
-        self.increased(self.velocities, u, self.c.one, turned)
+        self.go_on(x, u, self.motion(x, u, times))
+
+    def motion(self, x: Sequence[str], u: Sequence[str], times: StepLengths) -> KeplerMotion:
+        """Return Kepler's motion of all bodies."""
+        return kepler_flow(self.w, self.v, x, u, self.mu, self.v.splat(times.flow))
+
+    def go_on(self, x: Sequence[str], u: Sequence[str], motion: KeplerMotion) -> None:
+        """Write the places and velocities that a motion comes to."""
+        self.increased(self.places, x, self.c.one, motion.moved)
+        self.increased(self.velocities, u, self.c.one, motion.turned)
 
     def kicked(self, x: list[str], u: list[str], times: StepLengths) -> tuple[list[str], list[str]]:
         """Write the flow of H₁ and return places and velocities after it."""
+        raise NotImplementedError
+
+    def kick_derivative(self, x: list[str], times: StepLengths) -> Derivative:
+        """Return what moves deviations as the flow of H₁ moves the orbit; x are the places after it."""
+        raise NotImplementedError
+
+    def enter_deviation(self, outer: str, inner: str) -> None:
+        """Write δx and δv along each axis, and what else is kept beside them, from (δq, δp)."""
+        raise NotImplementedError
+
+    def leave_deviation(self, inner: str, outer: str, steps: str) -> None:
+        """Write (δq, δp) after so many steps."""
         raise NotImplementedError
 
     def count(self, steps: str) -> None:
@@ -116,18 +141,18 @@ class BodyLanes:
             new.append(total)
         return new
 
-    def row(self, index: str | int) -> str:
-        """Read a vector over bodies."""
-        address, kind = self._address(index), self.w.number
+    def row(self, index: str | int, array: str = "") -> str:
+        """Read a vector over bodies, of the state or of another array."""
+        address, kind = self._address(index, array), self.w.number
         if kind.pair:
             return self.v.paired(*(self._part.load(self._half(address, k), 0) for k in (0, 1)))
         if kind.scalar == "x86_fp80":  # in memory they lie apart
             return self.gathered([self.w.load(address, lane) for lane in range(self.lanes)])
         return self.v.load(address, 0)
 
-    def set_row(self, value: str, index: str | int) -> None:
-        """Write a vector over bodies."""
-        address, kind = self._address(index), self.w.number
+    def set_row(self, value: str, index: str | int, array: str = "") -> None:
+        """Write a vector over bodies, of the state or of another array."""
+        address, kind = self._address(index, array), self.w.number
         if kind.pair:
             for k in (0, 1):
                 part = self.w.let(f"extractvalue {self.v.number.name} {value}, {k}")
@@ -138,10 +163,10 @@ class BodyLanes:
         else:
             self.v.store(value, address, 0)
 
-    def _address(self, index: str | int) -> str:
+    def _address(self, index: str | int, array: str) -> str:
         if isinstance(index, int):
-            return self.w.at(self.state, index * self.lanes)
-        return self.w.at(self.state, self.w.let(f"mul i64 {index}, {self.lanes}"))
+            return self.w.at(array or self.state, index * self.lanes)
+        return self.w.at(array or self.state, self.w.let(f"mul i64 {index}, {self.lanes}"))
 
     def _half(self, address: str, part: int) -> str:
         return self.w.in_numbers(DOUBLE).at(address, part * self.lanes)
@@ -180,6 +205,23 @@ class BodyLanes:
         return self.v.paired(
             *(one(self.w.let(f"extractvalue {self.v.number.name} {value}, {k}")) for k in (0, 1))
         )
+
+    def set_deviation(self, values: Sequence[str], index: int | str, inner: str) -> None:
+        """Store a deviation of one component of all bodies; the last body's goes into the lanes left over too."""
+        self.set_row(self.gathered([*values, *[values[-1]] * (self.lanes - len(values))]), index, inner)
+
+    def deviation(self, index: int | str, inner: str) -> list[str]:
+        """Return a deviation of one component of every body."""
+        value = self.row(index, inner)
+        return [self.v.lane(value, lane) for lane in range(self.count_of_bodies)]
+
+    def summed(self, weights: Sequence[Fraction], values: Sequence[str]) -> str:
+        """Return Σ weight · value of scalars."""
+        total = self.w.constant(Fraction(0))
+        for weight, value in zip(weights, values, strict=True):
+            if weight:
+                total = self.w.multiply_add(self.w.constant(weight), value, total)
+        return total
 
     # the state outside, in pairs of doubles --------------------------------------------------------
 

@@ -78,18 +78,28 @@ class LinearMotion:
         arguments = [*(w.load(self.state, i) for i in range(n)), *["poison"] * (n + 1)]
         changes = [(rest.force, times.kick)]
         if times.commutator:
-            inverse_mass = [row[n:] for row in self.part.field[:n]]
-            changes.append((commutator_force(rest, inverse_mass), times.commutator))
+            changes.append((commutator_force(rest, self.inverse_mass), times.commutator))
         for nodes, time in changes:
             for i, force in enumerate(w.program(rest.program(nodes), arguments)):
                 increase(w, self.state, self.carried, str(n + i), time, force)
 
+    @property
+    def inverse_mass(self) -> list[tuple[Fraction, ...]]:
+        """∂²H₀/∂p²."""
+        n = self.size // 2
+        return [row[n:] for row in self.part.field[:n]]
+
+    def flow_matrix(self, pair: str) -> tuple[str, str]:
+        """Return where exp(tL) − 1 of a pair lies, and what rounding took from it."""
+        w, entries = self.w, self.size**2
+        offset = w.let(f"add i64 {w.let(f'mul i64 {pair}, {2 * entries}')}, {self.matrices}")
+        matrix = w.at("%c", offset)
+        return matrix, w.at(matrix, entries)
+
     def _flow(self, pair: str) -> None:
         """Write y ← y + (exp(tL) − 1) y, column by column."""
         w, n = self.w, self.size
-        offset = w.let(f"add i64 {w.let(f'mul i64 {pair}, {2 * n * n}')}, {self.matrices}")
-        matrix = w.at("%c", offset)
-        lost = w.at(matrix, n * n)
+        matrix, lost = self.flow_matrix(pair)
         zero = w.constant(Fraction(0))
         with w.loop(0, n) as i:
             w.store(zero, self.moved, i)

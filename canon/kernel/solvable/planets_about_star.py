@@ -25,6 +25,7 @@ from itertools import accumulate
 from typing import TYPE_CHECKING
 
 from canon.kernel.solvable.lanes import BodyLanes, StepLengths
+from canon.kernel.solvable.planet_attractions import PlanetAttractions, Pull
 from canon.kernel.solvable.planet_coordinates import (
     PlanetCoordinates,
     heliocentric_coordinates,
@@ -35,18 +36,10 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from canon.kernel.llvm.writer import Writer
+    from canon.kernel.solvable.lanes import Derivative
     from canon.kernel.solvable.solvable_parts import Planets
 
 __all__ = ["HeliocentricPlanets", "JacobiPlanets"]
-
-
-@dataclass(frozen=True)
-class _Pull:
-    """Attractions k d/|d|³ along vectors d: registers k/|d|³ and |d|²."""
-
-    d: Sequence[str]
-    strength: str
-    square: str
 
 
 class _PlanetsInLanes(BodyLanes):
@@ -73,6 +66,8 @@ class _PlanetsInLanes(BodyLanes):
         axes = len(part.bodies[0])
         super().__init__(w, mu, axes, 4 * axes + 1, compensated=compensated)
         self.degrees = axes * len(self.m)
+        self.attractions = PlanetAttractions(self, part.attractions)
+        self.numbers_beside = 2 * axes
         self.centre = [w.at(self.extra, number * axes) for number in range(4)]
         self.steps = w.at(self.extra, 4 * axes)
 
@@ -125,56 +120,78 @@ class _PlanetsInLanes(BodyLanes):
         """Count steps, for the centre of mass."""
         self.w.store(self.w.algebra("add", self.w.load(self.steps, 0), self.w.whole(steps)), self.steps, 0)
 
-    # attractions -----------------------------------------------------------------------------------
+    # deviations ------------------------------------------------------------------------------------
 
-    def _pull(self, strength: Sequence[Fraction], d: Sequence[str], idle: Sequence[Fraction] = ()) -> _Pull:
-        """Return attractions; ``idle`` is added to |d|², so that lanes left over have a distance."""
-        c = self.c
-        square = c.numbers(idle) if idle else ""
-        for value in d:
-            square = c.fma(value, value, square) if square else c.mul(value, value)
-        # The root and the quotient at once, rather than one after the other.
-        part = c.div(c.numbers(self.filled(strength, Fraction(0))), c.mul(square, square))
-        return _Pull(d, c.mul(c.sqrt(square), part), square)
+    def enter_deviation(self, outer: str, inner: str) -> None:
+        """Write δX and δV of the planets, then those of the centre of mass."""
+        w, beside, bodies = self.w, self._beside(inner), range(len(self.m))
+        whole = sum(self.m, Fraction(0))
+        mean = [m / whole for m in self.m]
+        with w.loop(0, self.axes) as axis:
+            places = [w.load(outer, self._place(j, axis)) for j in bodies]
+            momenta = [w.load(outer, self._momentum(j, axis)) for j in bodies]
+            self.set_deviation([self.summed(row, places) for row in self.chart.places], axis, inner)
+            slow = [[a / m for a, m in zip(row, self.m, strict=True)] for row in self.chart.velocities]
+            velocities = [self.summed(row, momenta) for row in slow]
+            self.set_deviation(velocities, w.let(f"add i64 {axis}, {self.axes}"), inner)
+            w.store(self.summed(mean, places), beside, axis)
+            w.store(self.summed([1 / whole for _ in bodies], momenta), w.at(beside, self.axes), axis)
 
-    def _pulled(self, pull: _Pull, along: Sequence[str] | None = None) -> list[str]:
-        """Return the attractions, or how they change where d changes by ``along``."""
-        c = self.c
-        if along is None:
-            return [c.mul(pull.strength, d) for d in pull.d]
-        turn = c.div(c.mul(c.number(Fraction(-3)), c.dot(pull.d, along)), pull.square)
-        return [c.mul(pull.strength, c.fma(turn, d, a)) for d, a in zip(pull.d, along, strict=True)]
+    def leave_deviation(self, inner: str, outer: str, steps: str) -> None:
+        """Write (δq, δp) of all bodies."""
+        w, beside = self.w, self._beside(inner)
+        elapsed = w.algebra("mul", w.whole(steps), w.load("%c", 1))
+        with w.loop(0, self.axes) as axis:
+            velocity = w.load(w.at(beside, self.axes), axis)
+            centre = w.multiply_add(elapsed, velocity, w.load(beside, axis))
+            places = [centre, *self.deviation(axis, inner)]
+            velocities = [velocity, *self.deviation(w.let(f"add i64 {axis}, {self.axes}"), inner)]
+            for i, m in enumerate(self.m):
+                w.store(self.summed(self.chart.places_back[i], places), outer, self._place(i, axis))
+                back = [m * a for a in self.chart.velocities_back[i]]
+                w.store(self.summed(back, velocities), outer, self._momentum(i, axis))
 
-    def _turn(self, by: int) -> list[int]:
-        """Return the order of lanes in which each planet's place is taken by the one ``by`` places on."""
-        n = self.count_of_bodies
-        return [(i + by) % n if i < n else i for i in range(self.lanes)]
+    def _beside(self, inner: str) -> str:
+        return self.w.at(inner, 2 * self.axes * self.lanes)
 
-    def _pairs(self, place: Sequence[str]) -> list[_Pull]:
-        """Return the attractions among planets: each by the one k places on, k = 1 … ⌊n/2⌋."""
-        n, attractions = self.count_of_bodies, self.part.attractions
-        idle, pulls = self.filled([Fraction(0)] * n, Fraction(1)), list[_Pull]()
-        for k in range(1, n // 2 + 1):
-            onward = self._turn(k)
-            strength = [attractions[i + 1][onward[i] + 1] for i in range(n)]
-            pulls.append(self._pull(strength, self._differences(place, k), idle if self.lanes > n else ()))
-        return pulls
 
-    def _differences(self, place: Sequence[str], k: int) -> list[str]:
-        return [self.c.sub(self.rearranged(value, self._turn(k)), value) for value in place]
+@dataclass(frozen=True)
+class _JacobiPulls:
+    """What H₀ leaves of the attractions, R(X) for the velocities, and its derivatives.
 
-    def _add_pairs(
-        self, pulls: Sequence[_Pull], force: Sequence[str], place: Sequence[str] | None = None
-    ) -> list[str]:
-        """Add attractions and reactions to forces, or their changes where places change."""
-        total, n = list(force), self.count_of_bodies
-        for k, pull in enumerate(pulls, start=1):
-            actions = self._pulled(pull, None if place is None else self._differences(place, k))
-            for axis, action in enumerate(actions):
-                total[axis] = self.c.add(total[axis], action) if total[axis] else action
-                if 2 * k != n:
-                    total[axis] = self.c.sub(total[axis], self.rearranged(action, self._turn(-k)))
-        return total
+    Parameters
+    ----------
+    planets
+        The planets.
+    own, star, pairs
+        The attractions that H₀ holds, those by the star, and those among planets.
+    """
+
+    planets: JacobiPlanets
+    own: Pull
+    star: Pull
+    pairs: list[Pull]
+
+    def rates(self) -> list[str]:
+        """Return R(X)."""
+        a = self.planets.attractions
+        return self._gathered(a.pulled(self.own), a.add_pulls(self.pairs, a.pulled(self.star)))
+
+    def changes(self, dx: Sequence[str]) -> list[str]:
+        """Return R′(X) δX."""
+        a, along = self.planets.attractions, self.planets.from_star(dx)
+        forces = a.add_changes(self.pairs, a.changed(self.star, along), along)
+        return self._gathered(a.changed(self.own, dx), forces)
+
+    def bends(self, first: Sequence[str], second: Sequence[str]) -> list[str]:
+        """Return R″(X)[a, b]."""
+        a = self.planets.attractions
+        one, other = self.planets.from_star(first), self.planets.from_star(second)
+        forces = a.add_bends(self.pairs, a.bent(self.star, one, other), one, other)
+        return self._gathered(a.bent(self.own, first, second), forces)
+
+    def _gathered(self, own: Sequence[str], forces: Sequence[str]) -> list[str]:
+        return [self.planets.gathered_by(*each) for each in zip(own, forces, strict=True)]
 
 
 class JacobiPlanets(_PlanetsInLanes):
@@ -205,26 +222,42 @@ class JacobiPlanets(_PlanetsInLanes):
         With R_i the place from the star, R = CX, and f_i = −∂V/∂R_i the change of V_i is t(Σ_j C_ji f_j/m'_i + µ_i
         X_i/|X_i|³), C_ij = m_j/M_j for 0 < j < i and C_ii = 1.
         """
-        c, place = self.c, self._from_star(x)
-        star = self._pull([-k for k in self.part.attractions[0][1:]], place)
-        pairs = self._pairs(place)
+        c, pulls = self.c, self._pulls(x)
+        rates = pulls.rates()
+        if not times.commutator:
+            return x, self.increased(self.velocities, u, self.v.splat(times.kick), rates)
+        kick, more = self.v.splat(times.kick), self.v.splat(times.commutator)
+        change = [c.fma(more, b, c.mul(kick, a)) for a, b in zip(rates, pulls.changes(rates), strict=True)]
+        return x, self.increased(self.velocities, u, c.one, change)
+
+    def kick_derivative(self, x: list[str], times: StepLengths) -> Derivative:
+        """Return what moves deviations as the kick that found the planets at x moves the orbit."""
+        c, pulls, kick = self.c, self._pulls(x), self.v.splat(times.kick)
+        more = self.v.splat(times.commutator) if times.commutator else ""
+        rates = pulls.rates() if more else []
+
+        def moved(dx: list[str], du: list[str]) -> tuple[list[str], list[str]]:
+            first = pulls.changes(dx)
+            turned = [c.fma(kick, a, b) for a, b in zip(first, du, strict=True)]
+            if more:
+                bends = zip(pulls.bends(rates, dx), pulls.changes(first), strict=True)
+                turned = [c.fma(more, c.add(*two), b) for two, b in zip(bends, turned, strict=True)]
+            return dx, turned
+
+        return moved
+
+    def _pulls(self, x: Sequence[str]) -> _JacobiPulls:
+        c, attractions = self.c, self.attractions
+        place = self.from_star(x)
+        star = attractions.pull([-k for k in self.part.attractions[0][1:]], place)
         # 1/|X| as the flow that follows has it; the lanes left over move on plain orbits.
         square = c.dot(x, x)
         near = c.div(c.one, c.sqrt(square))
         weight = c.mul(c.numbers(self.filled(self.own, Fraction(0))), near)
-        own = _Pull(x, c.mul(weight, c.mul(near, near)), square)
-        forces = self._add_pairs(pairs, self._pulled(star))
-        rates = [self._gathered_by(*each) for each in zip(self._pulled(own), forces, strict=True)]
-        if not times.commutator:
-            return x, self.increased(self.velocities, u, self.v.splat(times.kick), rates)
-        along = self._from_star(rates)
-        forces = self._add_pairs(pairs, self._pulled(star, along), along)
-        bends = [self._gathered_by(*each) for each in zip(self._pulled(own, rates), forces, strict=True)]
-        kick, more = self.v.splat(times.kick), self.v.splat(times.commutator)
-        change = [c.fma(more, b, c.mul(kick, a)) for a, b in zip(rates, bends, strict=True)]
-        return x, self.increased(self.velocities, u, c.one, change)
+        own = Pull(x, c.mul(weight, c.mul(near, near)), c.div(c.number(Fraction(-3)), square))
+        return _JacobiPulls(self, own, star, attractions.pairs(place))
 
-    def _from_star(self, x: Sequence[str]) -> list[str]:
+    def from_star(self, x: Sequence[str]) -> list[str]:
         """Return R = CX along each axis."""
         c, n, found = self.c, self.count_of_bodies, list[str]()
         for value in x:
@@ -236,7 +269,7 @@ class JacobiPlanets(_PlanetsInLanes):
             found.append(total)
         return found
 
-    def _gathered_by(self, start: str, force: str) -> str:
+    def gathered_by(self, start: str, force: str) -> str:
         """Return start_i + Σ_j C_ji f_j/m'_i, summed by pairs of columns: short chains."""
         c, n = self.c, self.count_of_bodies
         sums = [c.fma(c.numbers(self.filled([1 / m for m in self.reduced], Fraction(0))), force, start)]
@@ -273,17 +306,42 @@ class HeliocentricPlanets(_PlanetsInLanes):
 
     def kicked(self, x: list[str], u: list[str], times: StepLengths) -> tuple[list[str], list[str]]:
         """Write X ← X + t Σ m_j V_j/m_0 and the change of V by the attractions among planets."""
-        c, kick = self.c, self.v.splat(times.kick)
-        m = self.part.masses
-        weights = c.numbers(self.filled([mass / m[0] for mass in m[1:]], Fraction(0)))
-        jump = [self._summed(c.mul(weights, value)) for value in u]
-        used = c.numbers(self.filled([Fraction(1)] * self.count_of_bodies, Fraction(0)))
-        x = self.increased(self.places, x, c.mul(kick, used), jump)
-        forces = self._add_pairs(self._pairs(x), [""] * self.axes)
-        if not forces[0]:
+        kick = self.v.splat(times.kick)
+        x = self.increased(self.places, x, self._reach(kick), self._jump(u))
+        pairs = self.attractions.pairs(x)
+        if not pairs:
             return x, u
-        inverse = c.numbers(self.filled([1 / mass for mass in m[1:]], Fraction(0)))
-        return x, self.increased(self.velocities, u, kick, [c.mul(inverse, force) for force in forces])
+        forces = self.attractions.add_pulls(pairs, [""] * self.axes)
+        return x, self.increased(self.velocities, u, kick, self._accelerations(forces))
+
+    def kick_derivative(self, x: list[str], times: StepLengths) -> Derivative:
+        """Return what moves deviations as the kick that left the planets at x moves the orbit."""
+        c, kick, pairs = self.c, self.v.splat(times.kick), self.attractions.pairs(x)
+        reach = self._reach(kick)
+
+        def moved(dx: list[str], du: list[str]) -> tuple[list[str], list[str]]:
+            dx = [c.fma(reach, a, b) for a, b in zip(self._jump(du), dx, strict=True)]
+            if not pairs:
+                return dx, du
+            changes = self._accelerations(self.attractions.add_changes(pairs, [""] * self.axes, dx))
+            return dx, [c.fma(kick, a, b) for a, b in zip(changes, du, strict=True)]
+
+        return moved
+
+    def _reach(self, kick: str) -> str:
+        """Return the kick's time in the lanes of planets, 0 in those left over."""
+        used = self.filled([Fraction(1)] * self.count_of_bodies, Fraction(0))
+        return self.c.mul(kick, self.c.numbers(used))
+
+    def _jump(self, u: Sequence[str]) -> list[str]:
+        """Return Σ m_j V_j/m_0, the same for all planets."""
+        m = self.part.masses
+        weights = self.c.numbers(self.filled([mass / m[0] for mass in m[1:]], Fraction(0)))
+        return [self._summed(self.c.mul(weights, value)) for value in u]
+
+    def _accelerations(self, forces: Sequence[str]) -> list[str]:
+        inverse = self.c.numbers(self.filled([1 / mass for mass in self.part.masses[1:]], Fraction(0)))
+        return [self.c.mul(inverse, force) for force in forces]
 
     def _summed(self, value: str) -> str:
         """Return the sum over all lanes, in every lane."""

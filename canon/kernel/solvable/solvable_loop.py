@@ -21,9 +21,10 @@ from canon.kernel.llvm.loop import METHOD, PARAMETERS, SIGNATURE, Loop, compiled
 from canon.kernel.llvm.number_types import DOUBLE, MachineType
 from canon.kernel.llvm.writer import Writer
 from canon.kernel.solvable.kepler_centres import CentresInLanes
-from canon.kernel.solvable.lanes import StepLengths
+from canon.kernel.solvable.lanes import BodyLanes, StepLengths
 from canon.kernel.solvable.linear_motion import LinearMotion, flow_matrices
 from canon.kernel.solvable.planets_about_star import HeliocentricPlanets, JacobiPlanets
+from canon.kernel.solvable.solvable_deviations import BodyDeviations, LinearDeviations
 from canon.kernel.solvable.solvable_parts import Centres, Planets
 
 if TYPE_CHECKING:
@@ -76,6 +77,25 @@ class SolvableMotion(Protocol):
         ...
 
 
+class SolvableTangents(Protocol):
+    """What the loop asks of deviations beside a motion."""
+
+    words: int
+    """Numbers that they take as they are moved, beside those of (q, p)."""
+
+    def enter(self, outer: str, inner: str) -> None:
+        """Write them as they are moved from those of (q, p)."""
+        ...
+
+    def leave(self, outer: str, steps: str) -> None:
+        """Write those of (q, p) after so many steps."""
+        ...
+
+    def move(self, times: StepLengths, pair: str) -> None:
+        """Write the flow of H₁ and then that of H₀, of the orbit and of its deviations."""
+        ...
+
+
 def solvable_loop(
     part: Part,
     degrees: int,
@@ -85,6 +105,8 @@ def solvable_loop(
     compensated: bool,
     number: MachineType = DOUBLE,
     democratic: bool = False,
+    vectors: int = 0,
+    units: Sequence[Fraction] = (),
 ) -> Loop:
     """Compile a splitting H = H₀ + H₁ by the flows of a solvable part and of the rest.
 
@@ -102,34 +124,48 @@ def solvable_loop(
         The arithmetic.
     democratic
         Whether planets move in democratic heliocentric coordinates rather than Jacobi's.
+    vectors
+        How many deviations, of 2n numbers each, are moved beside the orbit; they are the last numbers in ``e``.
+    units
+        What each component of a deviation of (q, p) is multiplied with there, powers of 2.
     """
     tables = _tables(scheme, corrector)
     size, w = 2 * degrees, Writer(number)
     pairs = sum(map(len, tables))
     motion, extra = _motion(w, part, pairs, compensated=compensated, democratic=democratic)
-    carry = size + 2 + 2 * size + motion.words
+    beside = _deviations(motion, size, vectors) if vectors else None
+    before = size + 2 + 2 * size + motion.words + (beside.words if beside else 0)
+    carry = before + vectors * size
     with w.loop(0, "%blocks") as block:
         y = w.at("%y", w.let(f"mul i64 {block}, {size}"))
         e = w.at("%e", w.let(f"mul i64 {block}, {carry}"))
         record, kept = w.at(e, size), w.at(e, 3 * size + 2)
         fresh = _differs(w, record, (y, e), size)
-        with w.loop(0, fresh):
+        # Deviations are led in along the orbit that is led in with them.
+        with w.loop(0, "1" if beside else fresh):
             motion.enter(y, e)
-        with w.loop(fresh, 1):
-            w.copy(kept, motion.state, motion.words)
+        if beside:
+            _multiply(w, w.at(e, before), vectors, [1 / unit for unit in units])
+            beside.enter(w.at(e, before), w.at(e, before - beside.words))
         with w.loop(0, 3) as phase:
-            leading_in, leading_out = (w.let(f"icmp eq i64 {phase}, {which}") for which in (0, 2))
+            leading_in, looped, leading_out = (w.let(f"icmp eq i64 {phase}, {which}") for which in range(3))
+            known = w.let(f"select i1 {looped}, i64 {fresh}, i64 1")
+            with w.loop(known, 1):
+                w.copy(kept, motion.state, motion.words)
             with w.loop(0, w.let(f"zext i1 {leading_out} to i64")):
                 motion.count("%steps")
                 w.copy(motion.state, kept, motion.words)
-            once = w.let(f"select i1 {leading_in}, i64 {fresh}, i64 1")
-            looped = w.let(f"icmp eq i64 {phase}, 1")
+            first_time = "1" if beside else fresh
+            once = w.let(f"select i1 {leading_in}, i64 {first_time}, i64 1")
             times = w.let(f"select i1 {looped}, i64 %steps, i64 {once}")
             first = w.entry((0, len(tables[0]), len(tables[0]) + len(tables[1])), phase)
             last = w.let(f"add i64 {first}, {w.entry([len(table) for table in tables], phase)}")
             with w.loop(0, times), w.loop(first, last) as pair:
-                _write_pair(w, motion, pair, commutators=bool(scheme.commutators))
+                _write_pair(w, beside or motion, pair, commutators=bool(scheme.commutators))
         motion.leave(y, e)
+        if beside:
+            beside.leave(w.at(e, before), "%steps")
+            _multiply(w, w.at(e, before), vectors, units)
         w.store(w.constant(Fraction(1)), record, 0)
         w.store(w.load("%c", 1), record, 1)
         w.copy(y, w.at(record, 2), size)
@@ -145,7 +181,9 @@ def solvable_loop(
     return Loop(code, degrees, compensated, number, carry, coefficients=coefficients)
 
 
-def _write_pair(w: Writer, motion: SolvableMotion, pair: str, *, commutators: bool) -> None:
+def _write_pair(
+    w: Writer, motion: SolvableMotion | SolvableTangents, pair: str, *, commutators: bool
+) -> None:
     """Write a kick and a flow, without branches between: what both read of the state is computed once."""
     place = w.at("%c", w.let(f"add i64 {w.let(f'mul i64 {pair}, {_NUMBERS}')}, {METHOD}"))
     kick, flow, commutator = (w.load(place, which) for which in range(_NUMBERS))
@@ -158,6 +196,16 @@ def _write_pair(w: Writer, motion: SolvableMotion, pair: str, *, commutators: bo
         motion.move(StepLengths(kick, flow, commutator), pair)
     with w.loop(with_it, 1):
         motion.move(StepLengths(kick, flow), pair)
+
+
+def _multiply(w: Writer, array: str, vectors: int, factors: Sequence[Fraction]) -> None:
+    """Multiply the components of vectors, which lie one after the other, with factors, none for 1."""
+    if all(factor == 1 for factor in factors):
+        return
+    factor = w.number_table(factors)
+    with w.loop(0, vectors) as g, w.loop(0, len(factors)) as i:
+        place = w.let(f"add i64 {w.let(f'mul i64 {g}, {len(factors)}')}, {i}")
+        w.store(w.algebra("mul", w.load(array, place), factor(i)), array, place)
 
 
 def _differs(w: Writer, record: str, state: tuple[str, str], size: int) -> str:
@@ -175,6 +223,13 @@ def _differs(w: Writer, record: str, state: tuple[str, str], size: int) -> str:
     for which, array in enumerate(state):
         compare(array, w.at(record, 2 + which * size), size)
     return w.let(f"zext i1 {b.equal(b.load(same, 0), b.constant(Fraction(0)))} to i64")
+
+
+def _deviations(motion: SolvableMotion, size: int, vectors: int) -> SolvableTangents:
+    if isinstance(motion, LinearMotion):
+        return LinearDeviations(motion, vectors)
+    assert isinstance(motion, BodyLanes)
+    return BodyDeviations(motion, size, vectors)
 
 
 def _motion(

@@ -18,7 +18,7 @@ from canon.kernel.llvm.formulas import LaneFormulas
 if TYPE_CHECKING:
     from canon.kernel.llvm.writer import Writer
 
-__all__ = ["REACH", "stumpff", "stumpff_series"]
+__all__ = ["REACH", "further_stumpff", "stumpff", "stumpff_series"]
 
 REACH = Fraction(5, 2)
 """Stumpff's functions are summed as power series up to this |z|, and reached from there by quartering z."""
@@ -63,6 +63,19 @@ def stumpff(w: Writer, v: Writer, beta: str, x: str) -> tuple[str, str]:
 def stumpff_series(c: LaneFormulas, z: str) -> tuple[str, str]:
     """Write c₂(z) and c₃(z) for |z| ≤ REACH."""
     return _series(c, z, 2), _series(c, z, 3)
+
+
+def further_stumpff(c: LaneFormulas, beta: str, x: str, g2: str, g3: str) -> tuple[str, str]:
+    """Write G₄ and G₅ for any X: by their series up to REACH, and beyond by βG_{k+2} = Xᵏ/k! − G_k."""
+    square = c.mul(x, x)
+    z = c.mul(beta, square)
+    near = c.at_most(c.abs(z), c.number(REACH))
+    small, per = c.select(near, z, c.zero), c.div(c.one, c.select(near, c.one, beta))
+    fourth = c.mul(c.mul(square, square), _series(c, small, 4))
+    fifth = c.mul(c.mul(c.mul(square, square), x), _series(c, small, 5))
+    far = c.mul(per, c.fma(c.number(Fraction(1, 2)), square, c.neg(g2)))
+    farther = c.mul(per, c.fma(c.number(Fraction(1, 6)), c.mul(square, x), c.neg(g3)))
+    return c.select(near, fourth, far), c.select(near, fifth, farther)
 
 
 def _series(c: LaneFormulas, z: str, first: int) -> str:
