@@ -352,6 +352,27 @@ SECTIONS = {
         (Table(("program", "ns a step", "× C"), r"^  (\S.*?) {2,}([\d.]+) ns a step(?: +([\d.]+) × C)?$"),),
         told=r"canon, double +\S+ ns a step +([\d.]+) × C",
     ),
+    "nonholonomic": Section(
+        "Where the motion is reversible and regular the energy error stays bounded; where it is chaotic it may wander, "
+        "and where no reversal leads back it may drift. The slip is in rounding units of the constraints' terms.",
+        (
+            Table(
+                (
+                    "system",
+                    "order",
+                    "step",
+                    "ΔE/E early",
+                    "late",
+                    "verdict",
+                    "slip, u",
+                    "ns a step",
+                    "× Taylor",
+                ),
+                r"^  order (\d), step (\S+) +\|ΔE/E\| (\S+) early, (\S+) late  (\S+) +slip (\S+) u +(\d+) ns +(\S+) ×",
+                under=r"^([a-z].*)$",
+            ),
+        ),
+    ),
     "rotations": Section(
         "Times in parts of heyoka's: below one the method is cheaper. Between mirrors the place is asked for, "
         "elsewhere the energy. The last lines of the output have round-off: norms of attitudes after many steps, in "

@@ -35,6 +35,7 @@ BENCHMARKS = {
     "roofline": "Compiled loops, beside what the processor can do",
     "preparation": "What a motion costs beside its steps",
     "constraints": "Constraints kept by RATTLE, beside a C program",
+    "nonholonomic": "Constraints on velocities kept by the nonholonomic leapfrog",
     "rotations": "Rotating bodies and charges, by methods of their own",
     "brouwer": "Energy error over 10⁸ steps: Brouwer's law",
     "headline": "A million years of planets, ten million periods of Kepler's ellipse",

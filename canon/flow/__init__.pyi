@@ -38,6 +38,7 @@ from .geometry.numeric_evidence import symplectic_flow as symplectic_flow
 from .loaded_motion import load_motion as load_motion
 from .method.adaptive_methods import DOP853 as DOP853
 from .method.adaptive_methods import Taylor as Taylor
+from .method.constrained_method import NonholonomicLeapfrog as NonholonomicLeapfrog
 from .method.constrained_method import Rattle as Rattle
 from .method.energy_keeping_method import AverageVectorField as AverageVectorField
 from .method.lie_poisson_splitting import LiePoissonSplitting as LiePoissonSplitting

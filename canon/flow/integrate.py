@@ -97,7 +97,7 @@ def _in_fixed_steps(
     try:
         made = fixed_steps(task.system, loop, method, states, task.plan, progress, watch, so_far, events)
     except NonFiniteStateError as lost:
-        if task.system.holonomic is None or task.plan.h is None:
+        if not task.system.keeps_constraints or task.plan.h is None:
             raise
         raise told_of_constraints(task.system, lost, float(task.plan.h)) from None
     return joined(so_far, made)

@@ -82,8 +82,9 @@ def propagate(
         ``Splitting(...)``, ``Gauss(...)``, ``RK4()``, ``Taylor(...)`` or ``DOP853(...)``; ``Taylor()`` where
         not given. By exactly solvable parts: ``WisdomHolman(...)``, ``SABA(...)``, ``SBAB(...)``; with steps that
         vary: ``TimeTransformed(...)``; explicit where H does not split: ``canon.flow.SemiexplicitSplitting(...)`` and
-        ``canon.flow.ExtendedPhaseSpace(...)``; for holonomic constraints ``canon.flow.Rattle(...)``; for rotating
-        bodies ``canon.flow.LiePoissonSplitting(...)``; for charges in fields ``canon.flow.Boris(...)`` and
+        ``canon.flow.ExtendedPhaseSpace(...)``; for holonomic constraints ``canon.flow.Rattle(...)``; for
+        constraints on velocities ``canon.flow.NonholonomicLeapfrog(...)``; for rotating bodies
+        ``canon.flow.LiePoissonSplitting(...)``; for charges in fields ``canon.flow.Boris(...)`` and
         ``canon.flow.MagneticSplitting(...)``; not symplectic, but keeping the energy:
         ``canon.flow.AverageVectorField(...)``. Or a method by its name, such as ``"verlet"``,
         ``"kahan-li-8"``, ``"RK4"``, ``"gauss-6"``, ``"taylor"``, ``"saba-4"``.

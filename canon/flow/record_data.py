@@ -25,7 +25,7 @@ from canon.expression.symbols.expression_data import (
 from canon.flow.equations.first_order_motion import Contact, Contacts, MovingSystem, Residual
 from canon.flow.fixed_step.partial_step import LoopState
 from canon.flow.method.adaptive_methods import DOP853, Taylor
-from canon.flow.method.constrained_method import Rattle
+from canon.flow.method.constrained_method import NonholonomicLeapfrog, Rattle
 from canon.flow.method.energy_keeping_method import AverageVectorField
 from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
 from canon.flow.method.magnetic_methods import Boris, MagneticSplitting
@@ -45,6 +45,7 @@ from canon.kernel.heyoka_bridge import fraction_of, heyoka_number, is_heyoka_num
 from canon.kernel.program.hamilton_equations import HamiltonEquations
 from canon.kernel.program.holonomic_system import HolonomicSystem
 from canon.kernel.program.lie_poisson_parts import CommonTurn, LiePoissonParts, PlaneTurns, TurningBlock
+from canon.kernel.program.nonholonomic_system import NonholonomicSystem
 from canon.kernel.schemes.splitting_schemes import Scheme
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ _CLASSES: dict[str, Any] = {
         RunRecord, Task, Samples, Plan, HamiltonEquations, MovingSystem, Residual, Contact, Contacts, ExtendedSystem,
         RunState, StepEnd, LoopState, Event, Crossing, Splitting, Gauss, RK4, Taylor, DOP853, TimeTransformed,
         SolvableSplitting, WisdomHolman, SABA, SBAB, Scheme, ExtendedPhaseSpace, SemiexplicitSplitting, Rattle,
-        HolonomicSystem, LiePoissonSplitting, LiePoissonParts, PlaneTurns,
+        HolonomicSystem, NonholonomicLeapfrog, NonholonomicSystem, LiePoissonSplitting, LiePoissonParts, PlaneTurns,
         CommonTurn, TurningBlock, Boris, MagneticSplitting, AverageVectorField,
     )
 }  # fmt: skip

@@ -23,8 +23,9 @@ from canon.flow.checked_request import (
     two_ends,
 )
 from canon.flow.equations.bounce import with_bounces
+from canon.flow.equations.constrained.holonomic_motion import with_constraints_kept
+from canon.flow.equations.constrained.nonholonomic_motion import with_velocity_constraints_kept
 from canon.flow.equations.first_order_motion import moving_system
-from canon.flow.equations.holonomic_motion import with_constraints_kept
 from canon.flow.equations.lagrangian_motion import SPAN
 from canon.flow.equations.poisson_motion import with_lie_poisson_parts
 from canon.flow.method.method_text import method_of
@@ -268,8 +269,8 @@ def _system_task(request: Request) -> tuple[Task, MovingSystem]:
     chosen = method_of(request.method)
     _check_method(chosen, moving)
     orbits_of = [by_name[name] for name in varying]
-    if chosen.family == "rattle":
-        moving = with_constraints_kept(request.system, motion, moving, exact_numbers(fixed), first, orbits_of)
+    if (kept := _KEEPING_CONSTRAINTS.get(chosen.family)) is not None:
+        moving = kept(request.system, motion, moving, exact_numbers(fixed), first, orbits_of)
     if chosen.family == "lie_poisson":
         moving = with_lie_poisson_parts(request.system, moving, exact_numbers(fixed), orbits_of)
     full = _full_states(moving, states, varying, orbits)
@@ -384,7 +385,13 @@ def _words(motion: FirstOrderMotion) -> list[str]:
     return said
 
 
-_FOR_ANY_SYSTEM = ("taylor", "dop853", "rk4", "gauss", "rattle", "lie_poisson")
+_KEEPING_CONSTRAINTS = {
+    "rattle": with_constraints_kept,
+    "nonholonomic_leapfrog": with_velocity_constraints_kept,
+}
+"""What gives the equations of a system to the methods that keep constraints themselves."""
+
+_FOR_ANY_SYSTEM = ("taylor", "dop853", "rk4", "gauss", *_KEEPING_CONSTRAINTS, "lie_poisson")
 """Families of methods that need no Hamiltonian."""
 
 

@@ -20,6 +20,7 @@ from canon.kernel.loops.doubled_phase_space import (
 )
 from canon.kernel.loops.gauss import gauss_loop
 from canon.kernel.loops.lie_poisson import lie_poisson_loop
+from canon.kernel.loops.nonholonomic_leapfrog import nonholonomic_loop
 from canon.kernel.loops.rattle import rattle_loop
 from canon.kernel.loops.splitting import splitting_loop
 from canon.kernel.magnetic.boris import boris_loop
@@ -35,7 +36,7 @@ from canon.kernel.solvable.solvable_parts import Centres, Planets, UnsolvableErr
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from canon.flow.method.constrained_method import Rattle
+    from canon.flow.method.constrained_method import NonholonomicLeapfrog, Rattle
     from canon.flow.method.energy_keeping_method import AverageVectorField
     from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
     from canon.flow.method.magnetic_methods import Boris, MagneticSplitting
@@ -119,6 +120,18 @@ def _rattle(system: HamiltonEquations, method: Rattle, precision: Precision, _or
         )
     weights = len(weights_of_order(method.order))
     return _kept_rattle(system, weights, precision.number, compensated=precision.compensated)
+
+
+def _nonholonomic(
+    system: HamiltonEquations, method: NonholonomicLeapfrog, precision: Precision, _orbits: int
+) -> Loop:
+    if system.nonholonomic is None:
+        raise ValueError(
+            "NonholonomicLeapfrog keeps the constraints on velocities of a ConstrainedLagrangian, and this is none; "
+            "Splitting, Gauss and Taylor apply"
+        )
+    weights = len(weights_of_order(method.order))
+    return _kept_nonholonomic(system, weights, precision.number, compensated=precision.compensated)
 
 
 def _lie_poisson(
@@ -226,6 +239,7 @@ _LOOPS: dict[str, Callable[[HamiltonEquations, Any, Precision, int], Loop]] = {
     "extended_phase_space": _extended,
     "semiexplicit": _semiexplicit,
     "rattle": _rattle,
+    "nonholonomic_leapfrog": _nonholonomic,
     "lie_poisson": _lie_poisson,
     "boris": _boris,
     "magnetic": _magnetic,
@@ -279,6 +293,14 @@ def _kept_projecting(
 def _kept_rattle(system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool) -> Loop:
     assert system.holonomic is not None
     return rattle_loop(system, system.holonomic, weights, number=number, compensated=compensated)
+
+
+@functools.lru_cache(maxsize=_KEPT)
+def _kept_nonholonomic(
+    system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool
+) -> Loop:
+    assert system.nonholonomic is not None
+    return nonholonomic_loop(system, system.nonholonomic, weights, number=number, compensated=compensated)
 
 
 @functools.lru_cache(maxsize=_KEPT)
@@ -378,7 +400,9 @@ def _of_extended(method: ExtendedPhaseSpace, _number: MachineType, h: Fraction) 
 
 
 def _of_composition(
-    method: Rattle | LiePoissonSplitting | Boris | MagneticSplitting, _number: MachineType, h: Fraction
+    method: Rattle | NonholonomicLeapfrog | LiePoissonSplitting | Boris | MagneticSplitting,
+    _number: MachineType,
+    h: Fraction,
 ) -> list[Fraction]:
     return [h * weight for weight in weights_of_order(method.order)]
 
@@ -395,6 +419,7 @@ _COEFFICIENTS: dict[str, Callable[[Any, MachineType, Fraction], list[Fraction]]]
     "extended_phase_space": _of_extended,
     "semiexplicit": _of_semiexplicit,
     "rattle": _of_composition,
+    "nonholonomic_leapfrog": _of_composition,
     "lie_poisson": _of_composition,
     "boris": _of_composition,
     "magnetic": _of_composition,

@@ -1,5 +1,6 @@
 from .adaptive_methods import DOP853 as DOP853
 from .adaptive_methods import Taylor as Taylor
+from .constrained_method import NonholonomicLeapfrog as NonholonomicLeapfrog
 from .constrained_method import Rattle as Rattle
 from .energy_keeping_method import AverageVectorField as AverageVectorField
 from .lie_poisson_splitting import LiePoissonSplitting as LiePoissonSplitting

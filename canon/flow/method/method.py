@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from canon.cached_property import cached_property
 from canon.expression.symbols.user_input import counted
 from canon.flow.method.adaptive_methods import DOP853, Taylor
-from canon.flow.method.constrained_method import Rattle
+from canon.flow.method.constrained_method import NonholonomicLeapfrog, Rattle
 from canon.flow.method.energy_keeping_method import AverageVectorField
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS
 from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
@@ -390,6 +390,7 @@ FixedStep = (
     | ExtendedPhaseSpace
     | SemiexplicitSplitting
     | Rattle
+    | NonholonomicLeapfrog
     | LiePoissonSplitting
     | Boris
     | MagneticSplitting

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from canon.flow.method.adaptive_methods import DOP853, Taylor
 from canon.flow.method.composition import COMPOSITIONS
-from canon.flow.method.constrained_method import Rattle
+from canon.flow.method.constrained_method import NonholonomicLeapfrog, Rattle
 from canon.flow.method.energy_keeping_method import AverageVectorField
 from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
 from canon.flow.method.magnetic_methods import Boris, MagneticSplitting
@@ -70,6 +70,8 @@ def _named() -> dict[str, Callable[[], Method]]:
         **{f"gauss-{stages}": partial(Gauss, stages) for stages in range(1, HIGHEST_STAGES + 1)},
         "rattle": Rattle,
         **{f"rattle-{each}": partial(Rattle, each) for each in COMPOSITIONS},
+        "nonholonomic-leapfrog": NonholonomicLeapfrog,
+        **{f"nonholonomic-leapfrog-{each}": partial(NonholonomicLeapfrog, each) for each in COMPOSITIONS},
         "lie-poisson": LiePoissonSplitting,
         **{f"lie-poisson-{each}": partial(LiePoissonSplitting, each) for each in COMPOSITIONS},
         "boris": Boris,
@@ -157,7 +159,7 @@ def method_named(name: str) -> Method:
 
 
 def _those_there_are() -> str:
-    composed = ("semiexplicit", "rattle", "lie-poisson", "boris", "magnetic")
+    composed = ("semiexplicit", "rattle", "nonholonomic-leapfrog", "lie-poisson", "boris", "magnetic")
     ranges = (("gauss", 1, HIGHEST_STAGES), ("avf", 2, _AVERAGES[-1]), *((name, 2, 8) for name in composed))
     numbered = ", ".join(
         f"{name}-{a} … {name}-{b}" for name, a, b in (*ranges, ("saba", 1, 8), ("sbab", 1, 8))
@@ -238,6 +240,8 @@ def method_from(written: Mapping[str, Any] | str) -> Method:
             return AverageVectorField(order, **rest)
         case {"rattle": int() as order, **rest} if not rest:
             return Rattle(order)
+        case {"nonholonomic_leapfrog": int() as order, **rest} if not rest:
+            return NonholonomicLeapfrog(order)
         case {"lie_poisson": int() as order, **rest} if not rest:
             return LiePoissonSplitting(order)
         case {"boris": int() as order, **rest} if not rest:
@@ -265,7 +269,8 @@ def method_from(written: Mapping[str, Any] | str) -> Method:
                 "{ gauss = stages, iteration = name }, "
                 "{ average_vector_field = order, points = number, iteration = name }, "
                 "{ taylor = tolerance }, { dop853 = tolerance }, { time_transformed = splitting }, "
-                "{ splitting = { a, b } }, { semiexplicit = order }, { rattle = order }, { lie_poisson = order }, "
+                "{ splitting = { a, b } }, { semiexplicit = order }, { rattle = order }, "
+                "{ nonholonomic_leapfrog = order }, { lie_poisson = order }, "
                 "{ boris = order }, { magnetic = order }, "
                 "{ extended_phase_space = order, omega = number }, "
                 "{ solvable = name, corrector = order, commutator = true, coordinates = name }"

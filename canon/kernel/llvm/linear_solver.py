@@ -131,19 +131,31 @@ class LinearSolver:
 
 
 def eliminated(w: Writer, matrix: list[list[str]], right: Sequence[str]) -> list[str]:
-    """Write the solution of equations whose matrix is nearly definite, without exchanging rows."""
+    """Write the solution of equations whose matrix is nearly definite, without exchanging rows.
+
+    Entries that are 0 may be "": nothing is written for them.
+    """
     k, rows = len(right), [[*row, x] for row, x in zip(matrix, right, strict=True)]
     inverse: list[str] = []
     for a in range(k):
         inverse.append(w.algebra("div", w.constant(Fraction(1)), rows[a][a]))
         for b in range(a + 1, k):
+            if not rows[b][a]:
+                continue
             share = w.negative(w.algebra("mul", rows[b][a], inverse[a]))
             for c in range(a + 1, k + 1):
-                rows[b][c] = w.multiply_add(share, rows[a][c], rows[b][c])
+                rows[b][c] = _increased(w, rows[b][c], share, rows[a][c])
     found = [""] * k
     for a in reversed(range(k)):
         total = rows[a][k]
         for c in range(a + 1, k):
-            total = w.multiply_add(w.negative(rows[a][c]), found[c], total)
+            total = _increased(w, total, w.negative(rows[a][c]), found[c]) if rows[a][c] else total
         found[a] = w.algebra("mul", total, inverse[a])
     return found
+
+
+def _increased(w: Writer, total: str, a: str, b: str) -> str:
+    """Write total + a b; a total or a b that is 0 is ""."""
+    if not b:
+        return total
+    return w.multiply_add(a, b, total) if total else w.algebra("mul", a, b)

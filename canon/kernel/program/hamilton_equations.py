@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from canon.kernel.program.holonomic_system import HolonomicSystem
     from canon.kernel.program.lie_poisson_parts import LiePoissonParts
+    from canon.kernel.program.nonholonomic_system import NonholonomicSystem
 
 __all__ = ["HamiltonEquations", "equations", "exact_number", "exact_numbers"]
 
@@ -62,7 +63,7 @@ class HamiltonEquations:
         Whether they are those of a map: T + V of which a step is a kick and a drift, and nothing between.
     named
         The nodes of further symbols that functions along the motion may hold, such as multipliers.
-    holonomic
+    holonomic, nonholonomic
         The constraints that a method itself keeps, and what it needs for that.
     lie_poisson
         The exactly solvable parts of a Lie–Poisson system, where a method moves it by them.
@@ -87,6 +88,7 @@ class HamiltonEquations:
     kicked: bool = False
     named: Mapping[Symbol, int] = field(default_factory=lambda: FrozenMapping({}))
     holonomic: HolonomicSystem | None = None
+    nonholonomic: NonholonomicSystem | None = None
     lie_poisson: LiePoissonParts | None = None
     variations: int = 0
 
@@ -95,6 +97,11 @@ class HamiltonEquations:
         """The components of a state that are coordinates and momenta rather than parameters."""
         n = len(self.q) - self.varying
         return [*range(n), *range(len(self.q), len(self.q) + n - self.spare)]
+
+    @property
+    def keeps_constraints(self) -> bool:
+        """Whether a method itself keeps constraints of theirs."""
+        return self.holonomic is not None or self.nonholonomic is not None
 
     @cached_property
     def inputs(self) -> tuple[Symbol, ...]:

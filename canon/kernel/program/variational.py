@@ -35,7 +35,7 @@ def variational(system: HamiltonEquations, variations: int) -> HamiltonEquations
     ValueError
         The method keeps constraints itself, or moves by the flows of parts of H.
     """
-    if system.holonomic is not None:
+    if system.keeps_constraints:
         raise ValueError(
             "the derivative of steps that keep constraints themselves is not known here: use Taylor() or Gauss(6), "
             "whose variations hold where they keep the constraints"

@@ -10,10 +10,11 @@ import numpy as np
 from sympy import Pow
 
 from canon.flow.checked_request import hamilton_equations_of
-from canon.flow.equations.holonomic_motion import NotForRattleError
+from canon.flow.equations.constrained.holonomic_motion import NotForRattleError
+from canon.flow.equations.constrained.nonholonomic_motion import NotForLeapfrogError
 from canon.flow.equations.lie_poisson_search import NoLiePoissonPartsError
 from canon.flow.fixed_step.gauge_integrals import gauge_shifts
-from canon.flow.method.constrained_method import Rattle
+from canon.flow.method.constrained_method import NonholonomicLeapfrog, Rattle
 from canon.flow.method.engine import FICTITIOUS_TIME
 from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
 from canon.flow.method.magnetic_methods import Boris, MagneticSplitting
@@ -127,7 +128,8 @@ def candidate_methods(question: Question) -> tuple[Method, ...]:
     splittings of two copies of the phase space, with Boris's push and magnetic splittings where H = (p − A)²/2m + φ;
     Wisdom & Holman's and its kin where H is a disturbed motion known in closed form; Taylor's, and two ordinary ones
     for comparison. Where there are no canonical variables, the last three alone, with RATTLE for holonomic
-    constraints, Lie–Poisson splittings and Gauss's methods for Poisson systems.
+    constraints and the leapfrog for those on velocities, Lie–Poisson splittings and Gauss's methods for Poisson
+    systems.
     """
     if not is_hamiltonian(question.hamiltonian):
         return Taylor(), *_of_constraints(question), *_of_rotations(question), DOP853(), RK4()
@@ -155,10 +157,13 @@ def _of_charges(question: Question) -> tuple[Method, ...]:
 
 
 def _of_constraints(question: Question) -> tuple[Method, ...]:
-    """Return methods that keep holonomic constraints themselves, where they apply."""
+    """Return methods that keep constraints themselves, where they apply."""
     system: Any = question.hamiltonian
     if not isinstance(system, ConstrainedLagrangian):
         return ()
+    if system.nonholonomic:
+        applies = _applies(question, NonholonomicLeapfrog(), NotForLeapfrogError)
+        return tuple(NonholonomicLeapfrog(order) for order in (4, 6, 2)) if applies else ()
     return (Rattle(4), Rattle(6)) if _applies(question, Rattle(), NotForRattleError) else ()
 
 

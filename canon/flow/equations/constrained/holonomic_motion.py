@@ -71,7 +71,10 @@ def _check(given: ConstrainedLagrangian, moving: MovingSystem) -> None:
     others = "Taylor, DOP853, RK4 and Gauss do"
     if given.nonholonomic:
         number = counted(len(given.nonholonomic), "constraint")
-        raise NotForRattleError(f"Rattle keeps holonomic constraints, not {number} on velocities; {others}")
+        also = "" if given.holonomic else "NonholonomicLeapfrog keeps those; "
+        raise NotForRattleError(
+            f"Rattle keeps holonomic constraints, not {number} on velocities; {also}{others}"
+        )
     if not given.holonomic:
         raise NotForRattleError(
             "Rattle keeps constraints, and there are none: hamiltonian(L) takes Splitting and Gauss"

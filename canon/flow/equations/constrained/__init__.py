@@ -1,0 +1,1 @@
+"""Constrained motion as methods take it that keep the constraints themselves."""
