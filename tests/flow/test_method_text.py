@@ -19,7 +19,7 @@ from canon import (
     work_precision,
 )
 from canon.flow.method.composition import COMPOSITIONS
-from canon.flow.method.constrained_method import Rattle
+from canon.flow.method.constrained_method import NonholonomicLeapfrog, Rattle
 from canon.flow.method.energy_keeping_method import AverageVectorField
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS, HEYOKA, SCIPY
 from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
@@ -44,6 +44,8 @@ NAMED = {
     **{f"semiexplicit-{order}": SemiexplicitSplitting(order) for order in COMPOSITIONS},
     **{f"rattle-{order}": Rattle(order) for order in COMPOSITIONS},
     **{f"lie-poisson-{order}": LiePoissonSplitting(order) for order in COMPOSITIONS},
+    **{f"nonholonomic-leapfrog-{order}": NonholonomicLeapfrog(order) for order in COMPOSITIONS},
+    "nonholonomic-leapfrog": NonholonomicLeapfrog(),
     "lie-poisson": LiePoissonSplitting(),
     **{f"boris-{order}": Boris(order) for order in COMPOSITIONS},
     **{f"magnetic-{order}": MagneticSplitting(order) for order in COMPOSITIONS},
@@ -66,6 +68,7 @@ KINDS = [
     Splitting("verlet", parts=(x.momentum**2, x**4)),
     Gauss(3),
     Rattle(6),
+    NonholonomicLeapfrog(4),
     LiePoissonSplitting(6),
     Boris(4),
     MagneticSplitting(6),

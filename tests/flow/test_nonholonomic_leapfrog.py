@@ -273,6 +273,53 @@ def test_a_million_steps_of_the_particle():
     assert abs(worse.energy_error)[-10:].max() > 30 * abs(worse.energy_error)[1]
 
 
+def test_a_knife_edge_on_a_slope_goes_down_and_up_again():
+    """x = (g/2ω²) sin² ωt down the slope of gravity g, y = (g/2ω²)(ωt − ½ sin 2ωt) across (Neimark & Fufaev)."""
+    L = Lagrangian((x.dot**2 + y.dot**2 + theta.dot**2) / 2 + 3 * x, [x, y, theta])
+    edge = ConstrainedLagrangian(L, nonholonomic=[y.dot * cos(theta) - x.dot * sin(theta)])
+    motion = propagate(edge, (0, 300), [0, 0, 0, 0, 0, 2], method=NonholonomicLeapfrog(4), step=0.02)
+    turned, size = 2 * motion.t, 3 / 8
+    assert abs(motion["x"] - size * np.sin(turned) ** 2).max() < 1e-6
+    assert abs(motion["y"] - size * (turned - np.sin(2 * turned) / 2)).max() < 1e-4
+    assert abs(motion["y"] - size * (turned + np.sin(2 * turned) / 2)).max() > 0.1
+    assert worst_residual(motion, edge) < 4 * U
+
+
+@pytest.mark.slow
+def test_chaplygins_ball():
+    """A ball with three different moments rolls on a plane; M about the point of contact is constant in space.
+
+    Energy and |M| stay near what they are, M_z is the momentum of φ, which the constraints leave free, and is kept.
+    M itself turns about the vertical as the angles err.
+    """
+    q, moments = [x, y, phi, theta, psi], (sp.Rational(3, 10), sp.Rational(2, 5), sp.Rational(1, 2))
+    R = sp.rot_axis3(phi).T * sp.rot_axis1(theta).T * sp.rot_axis3(psi).T
+    in_body = sp.Matrix(
+        [
+            phi.dot * sin(theta) * sin(psi) + theta.dot * cos(psi),
+            phi.dot * sin(theta) * cos(psi) - theta.dot * sin(psi),
+            phi.dot * cos(theta) + psi.dot,
+        ]
+    )
+    spin = R * in_body
+    T = (x.dot**2 + y.dot**2 + sum(a * b**2 for a, b in zip(moments, in_body, strict=True))) / 2
+    rolls = [sp.expand(x.dot - spin[1]), sp.expand(y.dot + spin[0])]
+    ball = ConstrainedLagrangian(Lagrangian(T, q), nonholonomic=rolls)
+    M = R * sp.diag(*moments) * in_body + sp.Matrix([spin[0], spin[1], 0])
+    constants = sp.lambdify([*q, *ball.lagrangian.velocities], [sp.sqrt(M.dot(M)), M[2], M[0]])
+    start = start_of(ball, [0, 0, 0.3, 1.2, 0.5], [0, 0, 0.4, 0.1, 0.9])
+    exact = propagate(ball, (0, 100), start, samples=100)
+    assert all(np.ptp(found) < 1e-11 for found in constants(*exact.y))
+    motion = propagate(ball, (0, 10**4), start, method=NonholonomicLeapfrog(4), step=0.05, samples=2000)
+    assert worst_residual(motion, ball) < 4 * U
+    size, vertical, _ = constants(*motion.y)
+    assert np.ptp(vertical) < 1e-12
+    for found in (motion.energy_error, size):
+        error = abs(found - found[0])
+        assert error.max() < 1e-6
+        assert error[-200:].max() < 1.5 * error[1:201].max()
+
+
 @pytest.mark.slow
 def test_the_steady_circle_of_a_disc():
     """The disc rolls on a circle with its tilt and rates as the closed form says, over 10⁶ steps and 1600 turns."""
