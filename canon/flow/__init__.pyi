@@ -55,6 +55,7 @@ from .method.solvable_splitting import SABA as SABA
 from .method.solvable_splitting import SBAB as SBAB
 from .method.solvable_splitting import SolvableSplitting as SolvableSplitting
 from .method.solvable_splitting import WisdomHolman as WisdomHolman
+from .method.variational_method import GalerkinVariational as GalerkinVariational
 from .propagation import PreparedMotion as PreparedMotion
 from .propagation import is_separable as is_separable
 from .propagation import prepare as prepare

@@ -86,7 +86,8 @@ def propagate(
         constraints on velocities ``canon.flow.NonholonomicLeapfrog(...)``; for rotating bodies
         ``canon.flow.LiePoissonSplitting(...)``; for charges in fields ``canon.flow.Boris(...)`` and
         ``canon.flow.MagneticSplitting(...)``; not symplectic, but keeping the energy:
-        ``canon.flow.AverageVectorField(...)``. Or a method by its name, such as ``"verlet"``,
+        ``canon.flow.AverageVectorField(...)``; for a Lagrangian with its forces
+        ``canon.flow.GalerkinVariational(...)``. Or a method by its name, such as ``"verlet"``,
         ``"kahan-li-8"``, ``"RK4"``, ``"gauss-6"``, ``"taylor"``, ``"saba-4"``.
     step
         Step size of a fixed-step method. The step taken is the largest one not above it that divides the

@@ -32,6 +32,7 @@ from canon.flow.method.magnetic_methods import Boris, MagneticSplitting
 from canon.flow.method.method import RK4, Gauss, Splitting, TimeTransformed
 from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
 from canon.flow.method.solvable_splitting import SABA, SBAB, SolvableSplitting, WisdomHolman
+from canon.flow.method.variational_method import GalerkinVariational
 from canon.flow.run.event import Crossing, Event
 from canon.flow.run.samples import Samples
 from canon.flow.run.sampling_plan import Plan
@@ -44,6 +45,7 @@ from canon.frozen_mapping import FrozenMapping
 from canon.kernel.heyoka_bridge import fraction_of, heyoka_number, is_heyoka_number
 from canon.kernel.program.hamilton_equations import HamiltonEquations
 from canon.kernel.program.holonomic_system import HolonomicSystem
+from canon.kernel.program.lagrangian.momenta_and_forces import MomentaAndForces
 from canon.kernel.program.lie_poisson_parts import CommonTurn, LiePoissonParts, PlaneTurns, TurningBlock
 from canon.kernel.program.nonholonomic_system import NonholonomicSystem
 from canon.kernel.schemes.splitting_schemes import Scheme
@@ -63,6 +65,7 @@ _CLASSES: dict[str, Any] = {
         SolvableSplitting, WisdomHolman, SABA, SBAB, Scheme, ExtendedPhaseSpace, SemiexplicitSplitting, Rattle,
         HolonomicSystem, NonholonomicLeapfrog, NonholonomicSystem, LiePoissonSplitting, LiePoissonParts, PlaneTurns,
         CommonTurn, TurningBlock, Boris, MagneticSplitting, AverageVectorField,
+        GalerkinVariational, MomentaAndForces,
     )
 }  # fmt: skip
 

@@ -26,7 +26,7 @@ from canon.flow.equations.bounce import with_bounces
 from canon.flow.equations.constrained.holonomic_motion import with_constraints_kept
 from canon.flow.equations.constrained.nonholonomic_motion import with_velocity_constraints_kept
 from canon.flow.equations.first_order_motion import moving_system
-from canon.flow.equations.lagrangian_motion import SPAN
+from canon.flow.equations.lagrangian_motion import SPAN, with_momenta_and_forces
 from canon.flow.equations.poisson_motion import with_lie_poisson_parts
 from canon.flow.method.method_text import method_of
 from canon.flow.run.event import Event
@@ -271,6 +271,8 @@ def _system_task(request: Request) -> tuple[Task, MovingSystem]:
     orbits_of = [by_name[name] for name in varying]
     if (kept := _KEEPING_CONSTRAINTS.get(chosen.family)) is not None:
         moving = kept(request.system, motion, moving, exact_numbers(fixed), first, orbits_of)
+    if chosen.family == "galerkin":
+        moving = with_momenta_and_forces(request.system, motion, moving, exact_numbers(fixed), orbits_of)
     if chosen.family == "lie_poisson":
         moving = with_lie_poisson_parts(request.system, moving, exact_numbers(fixed), orbits_of)
     full = _full_states(moving, states, varying, orbits)
@@ -391,7 +393,7 @@ _KEEPING_CONSTRAINTS = {
 }
 """What gives the equations of a system to the methods that keep constraints themselves."""
 
-_FOR_ANY_SYSTEM = ("taylor", "dop853", "rk4", "gauss", *_KEEPING_CONSTRAINTS, "lie_poisson")
+_FOR_ANY_SYSTEM = ("taylor", "dop853", "rk4", "gauss", *_KEEPING_CONSTRAINTS, "lie_poisson", "galerkin")
 """Families of methods that need no Hamiltonian."""
 
 

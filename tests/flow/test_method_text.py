@@ -28,6 +28,7 @@ from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor, Time
 from canon.flow.method.method_text import method_from, method_named, method_of
 from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
 from canon.flow.method.solvable_splitting import SABA, SBAB, SolvableSplitting, WisdomHolman
+from canon.flow.method.variational_method import GalerkinVariational
 from canon.kernel.schemes.perturbed_schemes import saba
 from canon.kernel.schemes.splitting_schemes import SCHEMES
 from canon.scene import find
@@ -51,6 +52,8 @@ NAMED = {
     **{f"magnetic-{order}": MagneticSplitting(order) for order in COMPOSITIONS},
     **{f"avf-{order}": AverageVectorField(order) for order in range(2, 17, 2)},
     "avf": AverageVectorField(),
+    **{f"galerkin-{degree}": GalerkinVariational(degree) for degree in range(1, 9)},
+    "galerkin": GalerkinVariational(),
     "boris": Boris(),
     "rattle": Rattle(),
     "gauss": Gauss(),
@@ -73,6 +76,7 @@ KINDS = [
     Boris(4),
     MagneticSplitting(6),
     AverageVectorField(4),
+    GalerkinVariational(3, 5, "lobatto"),
     AverageVectorField(6, points=9, iteration="newton"),
     SemiexplicitSplitting(6),
     ExtendedPhaseSpace(4, omega=2.5),
@@ -121,6 +125,10 @@ def test_the_words_of_a_method_name_it():
         SABA(5),
         SABA("8-6-4"),
         SBAB(2),
+        GalerkinVariational(8),
+        GalerkinVariational(3, quadrature="lobatto"),
+        GalerkinVariational(3, points=5),
+        GalerkinVariational(3, 5, "lobatto"),
         AverageVectorField(),
         AverageVectorField(10, iteration="newton"),
         AverageVectorField(4, points=8),
@@ -170,6 +178,7 @@ def test_methods_answer_for_themselves():
         "MagneticSplitting",
         "LiePoissonSplitting",
         "Rattle",
+        "GalerkinVariational",
         "ExtendedPhaseSpace",
         "SemiexplicitSplitting",
     }

@@ -45,6 +45,7 @@ def test_the_rounded_method_is_symmetric_without_error(s, k, number):
     assert all(abs(columns[j][i] - true[i][j]) <= unit for i, j in places)
 
 
+@pytest.mark.slow
 def test_the_prediction_continues_polynomials_of_degree_seven_at_most():
     t = average_tableau(2, 10)
     for degree, exact in ((7, True), (8, False)):

@@ -20,6 +20,7 @@ from canon.expression.symbols.symbol import acceleration, momentum
 from canon.expression.symbols.user_input import counted
 from canon.flow.equations.first_order_motion import FirstOrderMotion, Residual
 from canon.flow.equations.linear_equations import SingularAtStartError, independent_rows, solved_from_start
+from canon.kernel.program.lagrangian.momenta_and_forces import MomentaAndForces
 from canon.mechanics.at_scale.constrained import constrained
 from canon.mechanics.at_scale.second_order import derivation_of_lagrangian
 
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
     from canon.array import Array
     from canon.expression.graph.graph import Graph
+    from canon.flow.equations.first_order_motion import MovingSystem
     from canon.mechanics.at_scale.constrained import ConstrainedEquations
     from canon.mechanics.at_scale.second_order import SecondOrderEquations
     from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
@@ -37,11 +39,13 @@ if TYPE_CHECKING:
 
 __all__ = [
     "SPAN",
+    "NoDiscreteActionError",
     "constraints_of",
     "lagrangian_motion",
     "multiplier_symbol",
     "rate_of_pull",
     "values_at_start",
+    "with_momenta_and_forces",
 ]
 
 _PULL = sp.Dummy("alpha", positive=True)
@@ -51,6 +55,10 @@ SPAN = sp.Dummy("span", positive=True)
 
 _IN_A_SPAN = 10.0
 """How many times in the span a deviation from the constraints falls by a factor e where the motion has no rates."""
+
+
+class NoDiscreteActionError(ValueError):
+    """The system is none whose discrete action a variational integrator makes stationary; the message says why."""
 
 
 def multiplier_symbol(i: int) -> Symbol:
@@ -249,3 +257,43 @@ def _undetermined(singular: SingularAtStartError, v: Sequence[Symbol], where: st
 
 def _dot(graph: Graph, a: Sequence[int], b: Sequence[int]) -> int:
     return graph.add([graph.mul(pair) for pair in zip(a, b, strict=True)])
+
+
+def with_momenta_and_forces(
+    given: Lagrangian | ConstrainedLagrangian,
+    motion: FirstOrderMotion,
+    moving: MovingSystem,
+    numbers: Mapping[str, Fraction],
+    varying: Sequence[Symbol] = (),
+) -> MovingSystem:
+    """Return the moving system of a Lagrangian with what variational integrators take: ∂L/∂q̇ and ∂L/∂q + Q.
+
+    Parameters
+    ----------
+    given
+        What the user gave.
+    motion, moving
+        Its equations, and the same with numbers.
+    numbers, varying
+        The parameters' numbers by name, and those that differ from orbit to orbit.
+
+    Raises
+    ------
+    NoDiscreteActionError
+        It is no Lagrangian, or has constraints.
+    """
+    from canon.mechanics.lagrange.lagrangian import Lagrangian
+
+    if not isinstance(given, Lagrangian):
+        raise NoDiscreteActionError(
+            f"GalerkinVariational is for a canon.Lagrangian without constraints and does not apply to a {motion.kind}; "
+            "Taylor, DOP853, RK4 and Gauss do"
+        )
+    graph, q, v = motion.graph, motion.q, motion.second
+    L = graph.from_sympy(given.L)
+    forces = [graph.from_sympy(force) for force in given.forces] or [graph.zero] * len(q)
+    pushed = [graph.add(pair) for pair in zip(graph.gradient(L, q), forces, strict=True)]
+    known = {graph.symbol(s): graph.number(numbers[s.name]) for s in motion.parameters if s not in varying}
+    found = MomentaAndForces(tuple(graph.gradient(L, v)), tuple(pushed))
+    numeric = found.with_nodes(graph.substitute(found.nodes, known))
+    return replace(moving, equations=replace(moving.equations, lagrangian=numeric))

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from canon.flow.fixed_step.gauge_integrals import gauge_shifts
 from canon.flow.fixed_step.partial_step import PartialSteps
+from canon.flow.fixed_step.step_coefficients import step_coefficients
 from canon.flow.method.composition import weights_of_order
+from canon.kernel.discrete_action.galerkin_step import galerkin_loop
 from canon.kernel.llvm.loop import Loop, runge_kutta_loop
 from canon.kernel.llvm.machine_code import simd_bytes
 from canon.kernel.loops.doubled_phase_space import (
-    mixing_coefficients,
     mixing_loop,
-    projecting_coefficients,
     projecting_loop,
 )
 from canon.kernel.loops.gauss import gauss_loop
@@ -26,15 +25,13 @@ from canon.kernel.loops.splitting import splitting_loop
 from canon.kernel.magnetic.boris import boris_loop
 from canon.kernel.magnetic.gauge_shifts import gauge_shift_loop
 from canon.kernel.magnetic.magnetic_form import magnetic_form
-from canon.kernel.schemes.average_vector_field import average_coefficients
-from canon.kernel.schemes.gauss_tableau import gauss_coefficients
 from canon.kernel.schemes.perturbed_schemes import corrector
-from canon.kernel.schemes.splitting_schemes import SCHEMES
 from canon.kernel.solvable.solvable_loop import solvable_loop
 from canon.kernel.solvable.solvable_parts import Centres, Planets, UnsolvableError, named_part, solvable_part
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
+    from fractions import Fraction
 
     from canon.flow.method.constrained_method import NonholonomicLeapfrog, Rattle
     from canon.flow.method.energy_keeping_method import AverageVectorField
@@ -44,6 +41,7 @@ if TYPE_CHECKING:
     from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
     from canon.flow.method.number_formats import Precision
     from canon.flow.method.solvable_splitting import SolvableSplitting
+    from canon.flow.method.variational_method import GalerkinVariational
     from canon.flow.run.sampling_plan import Plan
     from canon.kernel.llvm.number_types import MachineType
     from canon.kernel.program.hamilton_equations import HamiltonEquations
@@ -132,6 +130,19 @@ def _nonholonomic(
         )
     weights = len(weights_of_order(method.order))
     return _kept_nonholonomic(system, weights, precision.number, compensated=precision.compensated)
+
+
+def _galerkin(
+    system: HamiltonEquations, method: GalerkinVariational, precision: Precision, _orbits: int
+) -> Loop:
+    if system.lagrangian is None:
+        raise ValueError(
+            "GalerkinVariational is for a Lagrangian, with its forces, and this is none; Splitting, Gauss and Taylor "
+            "apply"
+        )
+    return _kept_galerkin(
+        system, method.degree, method.nodes, precision.number, compensated=precision.compensated
+    )
 
 
 def _lie_poisson(
@@ -240,6 +251,7 @@ _LOOPS: dict[str, Callable[[HamiltonEquations, Any, Precision, int], Loop]] = {
     "semiexplicit": _semiexplicit,
     "rattle": _rattle,
     "nonholonomic_leapfrog": _nonholonomic,
+    "galerkin": _galerkin,
     "lie_poisson": _lie_poisson,
     "boris": _boris,
     "magnetic": _magnetic,
@@ -304,6 +316,14 @@ def _kept_nonholonomic(
 
 
 @functools.lru_cache(maxsize=_KEPT)
+def _kept_galerkin(
+    system: HamiltonEquations, degree: int, points: int, number: MachineType, *, compensated: bool
+) -> Loop:
+    assert system.lagrangian is not None
+    return galerkin_loop(system, system.lagrangian, degree, points, compensated=compensated, number=number)
+
+
+@functools.lru_cache(maxsize=_KEPT)
 def _kept_lie_poisson(
     system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool
 ) -> Loop:
@@ -362,66 +382,8 @@ def steps_between(loop: Loop, method: Method, plan: Plan) -> PartialSteps:
 
 def _steps(loop: Loop, method: Method, plan: Plan) -> PartialSteps:
     assert plan.h is not None
-    coefficients = loop.coefficients or functools.partial(_COEFFICIENTS[method.family], method, loop.number)
+    coefficients = loop.coefficients or step_coefficients(method, loop.number)
     return PartialSteps(loop, coefficients, plan.start, plan.h)
 
 
 _kept_steps = functools.lru_cache(maxsize=_KEPT)(_steps)
-
-
-def _of_gauss(method: Gauss, number: MachineType, h: Fraction) -> list[Fraction]:
-    return gauss_coefficients(method.stages, h, number)
-
-
-def _of_average(method: AverageVectorField, number: MachineType, h: Fraction) -> list[Fraction]:
-    return average_coefficients(method.degree, method.stages, h, number)
-
-
-def _of_runge_kutta(_method: RK4, _number: MachineType, h: Fraction) -> list[Fraction]:
-    return [h / 2, h / 6, h / 3]
-
-
-def _of_splitting(method: Splitting, _number: MachineType, h: Fraction) -> list[Fraction]:
-    name = method.scheme.name
-    return list(_of_named_splitting(name, h)) if name else _times_step(method.scheme.a, method.scheme.b, h)
-
-
-@functools.lru_cache(maxsize=_KEPT)
-def _of_named_splitting(name: str, h: Fraction) -> tuple[Fraction, ...]:
-    return tuple(_times_step(SCHEMES[name].a, SCHEMES[name].b, h))
-
-
-def _times_step(a: Sequence[Fraction], b: Sequence[Fraction], h: Fraction) -> list[Fraction]:
-    return [h * c for pair in zip(a, b, strict=False) for c in pair] + [h * a[-1]]
-
-
-def _of_extended(method: ExtendedPhaseSpace, _number: MachineType, h: Fraction) -> list[Fraction]:
-    return mixing_coefficients(weights_of_order(method.order), Fraction(method.omega), h)
-
-
-def _of_composition(
-    method: Rattle | NonholonomicLeapfrog | LiePoissonSplitting | Boris | MagneticSplitting,
-    _number: MachineType,
-    h: Fraction,
-) -> list[Fraction]:
-    return [h * weight for weight in weights_of_order(method.order)]
-
-
-def _of_semiexplicit(method: SemiexplicitSplitting, _number: MachineType, h: Fraction) -> list[Fraction]:
-    return projecting_coefficients(weights_of_order(method.order), h)
-
-
-_COEFFICIENTS: dict[str, Callable[[Any, MachineType, Fraction], list[Fraction]]] = {
-    "splitting": _of_splitting,
-    "gauss": _of_gauss,
-    "average_vector_field": _of_average,
-    "rk4": _of_runge_kutta,
-    "extended_phase_space": _of_extended,
-    "semiexplicit": _of_semiexplicit,
-    "rattle": _of_composition,
-    "nonholonomic_leapfrog": _of_composition,
-    "lie_poisson": _of_composition,
-    "boris": _of_composition,
-    "magnetic": _of_composition,
-}
-"""What a step of each family reads, where the loop does not say it."""

@@ -16,3 +16,4 @@ from .nonseparable_splitting import SemiexplicitSplitting as SemiexplicitSplitti
 from .solvable_splitting import SABA as SABA
 from .solvable_splitting import SBAB as SBAB
 from .solvable_splitting import WisdomHolman as WisdomHolman
+from .variational_method import GalerkinVariational as GalerkinVariational

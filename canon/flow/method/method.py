@@ -24,6 +24,7 @@ from canon.flow.method.magnetic_methods import Boris, MagneticSplitting
 from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
 from canon.flow.method.solvable_splitting import SolvableSplitting
 from canon.flow.method.stage_iteration import ITERATIONS, check_iteration
+from canon.flow.method.variational_method import GalerkinVariational
 from canon.kernel.schemes.gauss_tableau import HIGHEST_STAGES
 from canon.kernel.schemes.order_conditions import order
 from canon.kernel.schemes.splitting_schemes import SCHEMES, Scheme
@@ -395,6 +396,7 @@ FixedStep = (
     | Boris
     | MagneticSplitting
     | AverageVectorField
+    | GalerkinVariational
 )
 """Methods that take steps of one size."""
 

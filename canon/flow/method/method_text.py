@@ -20,6 +20,7 @@ from canon.flow.method.magnetic_methods import Boris, MagneticSplitting
 from canon.flow.method.method import RK4, Gauss, Method, Splitting, TimeTransformed
 from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
 from canon.flow.method.solvable_splitting import SABA, SBAB, WisdomHolman
+from canon.flow.method.variational_method import GalerkinVariational
 from canon.kernel.schemes.gauss_tableau import HIGHEST_STAGES
 from canon.kernel.schemes.perturbed_schemes import ABA
 from canon.kernel.schemes.splitting_schemes import SCHEMES
@@ -50,6 +51,11 @@ _AVERAGE = re.compile(
     r"\s*avf[-_ ]?([0-9]{1,3})(?:,?\s*points\s*=?\s*([0-9]{1,3}))?(?:[-,_ ]\s*(newton))?\s*", re.IGNORECASE
 )
 
+_GALERKIN = re.compile(
+    r"\s*galerkin[-_ ]?([0-9]{1,3})(?:,?\s*points\s*=?\s*([0-9]{1,3}))?(?:[-,_ ]\s*(gauss|lobatto))?\s*",
+    re.IGNORECASE,
+)
+
 _RATIONAL = re.compile(r"[-+]?[0-9]{1,80}(?:\.[0-9]{0,80}|/[0-9]{1,80})?(?:[eE][-+]?[0-9]{1,2})?")
 
 _MOST_COEFFICIENTS = 1_000
@@ -78,6 +84,8 @@ def _named() -> dict[str, Callable[[], Method]]:
         **{f"boris-{each}": partial(Boris, each) for each in COMPOSITIONS},
         **{f"magnetic-{each}": partial(MagneticSplitting, each) for each in COMPOSITIONS},
         "avf": AverageVectorField,
+        "galerkin": GalerkinVariational,
+        **{f"galerkin-{each}": partial(GalerkinVariational, each) for each in range(1, HIGHEST_STAGES + 1)},
         **{f"avf-{each}": partial(AverageVectorField, each) for each in _AVERAGES},
         **{f"semiexplicit-{each}": partial(SemiexplicitSplitting, each) for each in COMPOSITIONS},
         "wisdom-holman": WisdomHolman,
@@ -150,6 +158,11 @@ def method_named(name: str) -> Method:
         return AverageVectorField(
             int(order), int(points) if points else None, iteration=(newton or "fixed-point").lower()
         )
+    if (galerkin := _GALERKIN.fullmatch(name)) is not None:
+        degree, points, quadrature = galerkin.groups()
+        return GalerkinVariational(
+            int(degree), int(points) if points else None, quadrature=(quadrature or "gauss").lower()
+        )
     if (here := _ELSEWHERE.get(_folded(name))) is not None:
         raise ValueError(f"no method is called {name!r} here: {here}")
     spelled = {_folded(known): known for known in _named()}
@@ -160,7 +173,12 @@ def method_named(name: str) -> Method:
 
 def _those_there_are() -> str:
     composed = ("semiexplicit", "rattle", "nonholonomic-leapfrog", "lie-poisson", "boris", "magnetic")
-    ranges = (("gauss", 1, HIGHEST_STAGES), ("avf", 2, _AVERAGES[-1]), *((name, 2, 8) for name in composed))
+    ranges = (
+        ("gauss", 1, HIGHEST_STAGES),
+        ("avf", 2, _AVERAGES[-1]),
+        ("galerkin", 1, HIGHEST_STAGES),
+        *((name, 2, 8) for name in composed),
+    )
     numbered = ", ".join(
         f"{name}-{a} … {name}-{b}" for name, a, b in (*ranges, ("saba", 1, 8), ("sbab", 1, 8))
     )
@@ -238,6 +256,8 @@ def method_from(written: Mapping[str, Any] | str) -> Method:
             return Gauss(stages, iteration=iteration)
         case {"average_vector_field": int() as order, **rest} if set(rest) <= {"points", "iteration"}:
             return AverageVectorField(order, **rest)
+        case {"galerkin": int() as degree, **rest} if set(rest) <= {"points", "quadrature"}:
+            return GalerkinVariational(degree, **rest)
         case {"rattle": int() as order, **rest} if not rest:
             return Rattle(order)
         case {"nonholonomic_leapfrog": int() as order, **rest} if not rest:
@@ -268,6 +288,7 @@ def method_from(written: Mapping[str, Any] | str) -> Method:
                 f"no method is written {known}; there are names, {_those_there_are()}, and tables, "
                 "{ gauss = stages, iteration = name }, "
                 "{ average_vector_field = order, points = number, iteration = name }, "
+                "{ galerkin = degree, points = number, quadrature = name }, "
                 "{ taylor = tolerance }, { dop853 = tolerance }, { time_transformed = splitting }, "
                 "{ splitting = { a, b } }, { semiexplicit = order }, { rattle = order }, "
                 "{ nonholonomic_leapfrog = order }, { lie_poisson = order }, "

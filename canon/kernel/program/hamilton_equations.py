@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
 
     from canon.kernel.program.holonomic_system import HolonomicSystem
+    from canon.kernel.program.lagrangian.momenta_and_forces import MomentaAndForces
     from canon.kernel.program.lie_poisson_parts import LiePoissonParts
     from canon.kernel.program.nonholonomic_system import NonholonomicSystem
 
@@ -65,6 +66,8 @@ class HamiltonEquations:
         The nodes of further symbols that functions along the motion may hold, such as multipliers.
     holonomic, nonholonomic
         The constraints that a method itself keeps, and what it needs for that.
+    lagrangian
+        Momenta and forces of the Lagrangian that they come from, for methods that discretise its action.
     lie_poisson
         The exactly solvable parts of a Lie–Poisson system, where a method moves it by them.
     variations
@@ -90,6 +93,7 @@ class HamiltonEquations:
     holonomic: HolonomicSystem | None = None
     nonholonomic: NonholonomicSystem | None = None
     lie_poisson: LiePoissonParts | None = None
+    lagrangian: MomentaAndForces | None = None
     variations: int = 0
 
     @cached_property

@@ -40,6 +40,11 @@ def variational(system: HamiltonEquations, variations: int) -> HamiltonEquations
             "the derivative of steps that keep constraints themselves is not known here: use Taylor() or Gauss(6), "
             "whose variations hold where they keep the constraints"
         )
+    if system.lagrangian is not None:
+        raise ValueError(
+            "the derivative of steps of a discrete action is not known here: use Taylor(), DOP853() or Gauss(6), or "
+            "hamiltonian(L) with a Gauss method, whose steps are symplectic too"
+        )
     if system.lie_poisson is not None:
         raise ValueError(
             "the derivative of Lie–Poisson splittings is not known here: use Taylor(), DOP853() or Gauss(6)"

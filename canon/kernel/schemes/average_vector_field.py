@@ -23,19 +23,15 @@ from typing import TYPE_CHECKING
 
 from canon.kernel.llvm.number_types import DOUBLE
 from canon.kernel.schemes.gauss_tableau import Tableau, coefficient_rows, gauss_tableau
+from canon.kernel.schemes.legendre_values import legendre_values
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from canon.kernel.llvm.number_types import MachineType
 
 __all__ = ["MOST_POINTS", "average_coefficients", "average_tableau"]
 
 MOST_POINTS = 16
 """Nodes of quadrature at most."""
-
-_DIGITS = 10**70
-"""Unit of the numbers that are computed with, ten digits finer than that of the nodes."""
 
 _PREDICTED = 8
 """Legendre's polynomials that predict the next step's stages: more would enlarge rounding."""
@@ -51,8 +47,8 @@ def average_tableau(degree: int, points: int) -> Tableau:
     [[0.211325, 0.211325], [0.788675, 0.788675]]
     """
     quadrature = gauss_tableau(points)
-    at = [list(_legendre(2 * c - 1, max(degree, points) + 1)) for c in quadrature.c]
-    later = [list(_legendre(2 * c + 1, points)) for c in quadrature.c]
+    at = [list(legendre_values(2 * c - 1, max(degree, points) + 1)) for c in quadrature.c]
+    later = [list(legendre_values(2 * c + 1, points)) for c in quadrature.c]
     # ∫₀^c of the l-th, not normalised, is (L_{l+1} − L_{l−1})/(2(2l + 1)).
     mu = [
         [c + sum((own[k + 1] - own[k - 1]) * other[k] / 2 for k in range(1, degree)) for other in at]
@@ -83,15 +79,3 @@ def average_coefficients(
                 mu[i][j] = Fraction(round(tableau.mu[i][j] * unit), unit)
                 mu[points - 1 - i][points - 1 - j] = 1 - mu[i][j]
     return coefficient_rows(tableau, mu, h, number)
-
-
-def _legendre(z: Fraction, count: int) -> Iterator[Fraction]:
-    """Yield L_0(z) …, so many of Legendre's polynomials."""
-    before, here = Fraction(0), Fraction(1)
-    for k in range(count):
-        yield here
-        before, here = here, _digits(((2 * k + 1) * z * here - k * before) / (k + 1))
-
-
-def _digits(value: Fraction) -> Fraction:
-    return Fraction(round(value * _DIGITS), _DIGITS)

@@ -1,0 +1,1 @@
+"""Lagrangian systems ready to compile, for methods that work on the Lagrangian itself."""
