@@ -18,7 +18,6 @@ from canon import (
     coordinates,
     drift,
     drift_study,
-    flow_jacobian,
     load_motion,
     parameters,
     propagate,
@@ -468,8 +467,6 @@ def test_other_systems_and_orders_are_refused():
         propagate(free_body([1, 2, C]), (0, 1), START, method="lie-poisson", step=0.1, parameters={C: 0})
     with pytest.raises(ValueError, match=r"a matrix of 2 × 2 brackets for 3 variables"):
         PoissonSystem(M[0], M, sp.eye(2))
-    with pytest.raises(ValueError, match="derivative"):
-        flow_jacobian(FREE, (0, 1), START, method=LiePoissonSplitting(), step=0.1)
 
 
 @pytest.mark.slow

@@ -138,7 +138,7 @@ def _index(
     name: str, run: DeviationRun, vectors: int, seed: int, note: Callable[[Array], Array]
 ) -> ChaosIndicator:
     task = deviation_task(run)
-    size = 2 * (len(task.system.q) - task.system.varying)
+    size = len(task.system.rows)
     if vectors not in range(2, size + 1):
         raise ValueError(f"vectors={vectors}: an alignment index takes 2 … {size} deviations of this system")
     frame = random_vectors(size, vectors, seed)

@@ -193,7 +193,7 @@ def fast_lyapunov_indicator(
 
 def _one_deviation(run: DeviationRun, deviation: npt.ArrayLike | None, seed: int) -> DeviationGrowth:
     task = deviation_task(run)
-    size = 2 * (len(task.system.q) - task.system.varying)
+    size = len(task.system.rows)
     frame = random_vectors(size, 1, seed) if deviation is None else given_frame(deviation, size)
     if frame.shape[1] != 1:
         raise ValueError(f"deviation: {frame.shape[1]} vectors; give one vector, shape ({size},)")

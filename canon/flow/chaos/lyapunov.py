@@ -171,7 +171,7 @@ def lyapunov_spectrum(
     task = deviation_task(
         DeviationRun(system, t_span, y0, method, step, tolerance, precision, parameters, samples, progress)
     )
-    size = 2 * (len(task.system.q) - task.system.varying)
+    size = len(task.system.rows)
     count = size if vectors is None else vectors
     if count not in range(1, size + 1):
         raise ValueError(f"vectors={vectors}: the system has exponents 1 … {size}")

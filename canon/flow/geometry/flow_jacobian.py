@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from canon.expression.symbols.user_input import counted
+from canon.flow.geometry.compiled_jacobian import compiled_jacobian
 from canon.flow.geometry.jacobian_in_stretches import jacobian_in_stretches
-from canon.flow.geometry.solvable_jacobian import solvable_jacobian
 from canon.flow.geometry.transformed_jacobian import transformed_jacobian
 from canon.flow.propagation import propagated
 from canon.flow.request import Request
@@ -130,7 +130,7 @@ def flow_jacobian(
     :class:`canon.flow.ExtendedPhaseSpace`, which is symplectic in two copies of phase space: M is the derivative of
     their mean, from copies that begin alike, and symplectic to the method's error. For Taylor and DOP853 it is
     the flow's, to their tolerance, with the jumps of variations where rates jump at kinks, which steps of one size pass
-    unseen.
+    unseen. On a Poisson manifold, by :class:`canon.flow.LiePoissonSplitting`, M Π Mᵀ = Π′ holds to round-off.
 
     Parameters
     ----------
@@ -188,8 +188,8 @@ def flow_jacobian(
 
 def _with_variations(task: Task, moving: MovingSystem | None) -> tuple[Array, Array, Array, Array]:
     """Return times, motion, Jacobians and what they are beyond doubles, of all that is integrated."""
-    if task.method.solvable is not None:
-        return solvable_jacobian(task)
+    if task.method.solvable is not None or task.system.lie_poisson is not None:
+        return compiled_jacobian(task)
     size = len(task.states[0])
     # What is integrated along unseen depends on the start too, and is shown here on the way only.
     whole = task.system if moving is None else replace(task.system, varying=0, spare=0)

@@ -15,7 +15,7 @@ __all__ = ["given_frame", "random_frame", "random_vectors"]
 
 
 def random_frame(size: int, vectors: int, seed: int) -> Array:
-    """Return the first columns of a random orthogonal matrix that is symplectic too, shape (size, vectors).
+    """Return the first columns of a random orthogonal matrix, symplectic too where that can be, shape (size, vectors).
 
     Of a whole frame the last column is conjugate to the first, the last but one to the second, and so on: then the
     diagonal of R in every QR decomposition of what a symplectic map makes of it has pairs r_i r_{2n+1−i} = 1. This is
@@ -24,7 +24,7 @@ def random_frame(size: int, vectors: int, seed: int) -> Array:
     Parameters
     ----------
     size, vectors
-        2n, and how many columns.
+        2n, or an odd number as on a Poisson manifold, and how many columns.
     seed
         Of NumPy's generator of random numbers.
 
@@ -34,6 +34,8 @@ def random_frame(size: int, vectors: int, seed: int) -> Array:
     >>> bool(abs(frame.T @ frame - np.eye(4)).max() < 1e-15)
     True
     """
+    if size % 2:
+        return random_vectors(size, vectors, seed)
     n = size // 2
     random = np.random.default_rng(seed)
     unitary, _ = np.linalg.qr(random.standard_normal((n, n)) + 1j * random.standard_normal((n, n)))

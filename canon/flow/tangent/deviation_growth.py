@@ -96,7 +96,9 @@ class DeviationRun:
 LEAST_SAMPLES = 32
 """Samples below which there is no verdict."""
 
-_CARRIED = ("splitting", "solvable", "gauss", "average_vector_field", "rk4", "magnetic", "taylor", "dop853")
+_CARRIED = (
+    "splitting", "solvable", "gauss", "average_vector_field", "rk4", "magnetic", "lie_poisson", "taylor", "dop853",
+)  # fmt: skip
 """Families of methods that carry deviations: their steps commute with differentiation."""
 
 _SPREAD, _GOLDEN = 0.8, 0.6180339887498949
@@ -128,7 +130,7 @@ def deviation_task(run: DeviationRun) -> Task:
             "deviations here are those of a Hamiltonian, or of a vector field whose variables are free: make a "
             "Hamiltonian of the system, hamiltonian(L), in coordinates that keep its constraints"
         )
-    if task.system.spare:
+    if task.system.spare and task.system.lie_poisson is None:
         raise ValueError("an odd number of variables: deviations here are those of an even one, as of (q, p)")
     if task.method.family not in _CARRIED:
         raise ValueError(

@@ -9,10 +9,13 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from canon.flow.fixed_step.compiled_loop import check_splitting, loop_by_solvable_parts
+from canon.flow.method.composition import weights_of_order
 from canon.flow.method.energy_keeping_method import AverageVectorField
+from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
 from canon.flow.method.method import Gauss, Splitting
 from canon.kernel.llvm.machine_code import simd_bytes
 from canon.kernel.loops.deviations import Deviations
+from canon.kernel.loops.lie_poisson import lie_poisson_loop
 from canon.kernel.loops.tangent_gauss import numbers_of_method, tangent_gauss_loop
 from canon.kernel.loops.tangent_splitting import tangent_splitting_loop
 from canon.kernel.program.program import exact_value
@@ -84,9 +87,14 @@ def tangent_loop(
         return TangentLoop(
             loop, Deviations(number, state, size, vectors, method=own), tuple(map(float, units))
         )
+    lanes = 1
     if orbits > 1:
-        number, lanes = dataclasses.replace(number, lanes=registers * _INTERLEAVED), 1
-    else:
+        number = dataclasses.replace(number, lanes=registers * _INTERLEAVED)
+    if isinstance(method, LiePoissonSplitting):
+        deviations = Deviations(number, state, len(system.rows), vectors)
+        weights = len(weights_of_order(method.order))
+        return _kept_lie_poisson(system, weights, deviations, compensated=precision.compensated)
+    if orbits == 1:
         lanes = min(registers, 1 << (vectors - 1).bit_length())
     deviations = Deviations(number, state, size, vectors, lanes)
     assert isinstance(method, Splitting)
@@ -98,7 +106,7 @@ def tangent_loop(
 
 def has_tangent_loop(method: Method) -> bool:
     """Tell whether the deviations of a method are compiled beside the orbit."""
-    return method.family in ("splitting", "solvable", "gauss", "average_vector_field")
+    return method.family in ("splitting", "solvable", "gauss", "average_vector_field", "lie_poisson")
 
 
 def _mass_weights(system: HamiltonEquations) -> tuple[Fraction, ...]:
@@ -128,4 +136,20 @@ def _kept_gauss(
     system: HamiltonEquations, stages: int, deviations: Deviations, *, compensated: bool, newton: bool
 ) -> TangentLoop:
     loop = tangent_gauss_loop(system, stages, deviations, compensated=compensated, newton=newton)
+    return TangentLoop(loop, deviations)
+
+
+@functools.lru_cache(maxsize=_KEPT)
+def _kept_lie_poisson(
+    system: HamiltonEquations, weights: int, deviations: Deviations, *, compensated: bool
+) -> TangentLoop:
+    assert system.lie_poisson is not None
+    loop = lie_poisson_loop(
+        system,
+        system.lie_poisson,
+        weights,
+        compensated=compensated,
+        number=deviations.number,
+        deviations=deviations,
+    )
     return TangentLoop(loop, deviations)

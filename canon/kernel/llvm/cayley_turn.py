@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from canon.kernel.llvm.writer import Writer
 
-__all__ = ["turn_factor", "write_turn"]
+__all__ = ["across", "turn_factor", "write_turn"]
 
 Entry = tuple[int, int, str]
 """Components i and j, and k with Kᵢⱼ = −k, Kⱼᵢ = k."""
@@ -41,13 +41,13 @@ def write_turn(w: Writer, y: str, e: str, entries: Sequence[Entry], factor: tupl
     f, (s, lost) = LaneFormulas(w), factor
     old = {i: w.load(y, i) for entry in entries for i in entry[:2]}
     if not e:
-        halfway = {i: f.add(old[i], moved) for i, moved in _across(f, entries, old).items()}
-        for i, moved in _across(f, entries, halfway).items():
+        halfway = {i: f.add(old[i], moved) for i, moved in across(f, entries, old).items()}
+        for i, moved in across(f, entries, halfway).items():
             increase(w, y, "", str(i), s, moved)
             increase(w, y, "", str(i), lost, moved)
         return
     once, rest = _across_exactly(f, entries, old, {i: w.load(e, i) for i in old})
-    twice = _across(f, entries, once)
+    twice = across(f, entries, once)
     for i, moved in once.items():
         total, slip = f.two_sum(moved, twice[i])
         small = f.fma(s, f.add(slip, rest[i]), f.mul(lost, total))
@@ -55,7 +55,7 @@ def write_turn(w: Writer, y: str, e: str, entries: Sequence[Entry], factor: tupl
         increase(w, y, e, str(i), s, total)
 
 
-def _across(f: LaneFormulas, entries: Sequence[Entry], y: dict[int, str]) -> dict[int, str]:
+def across(f: LaneFormulas, entries: Sequence[Entry], y: dict[int, str]) -> dict[int, str]:
     """Write K y."""
     total = dict.fromkeys(y, f.zero)
     for i, j, k in entries:

@@ -1,4 +1,4 @@
-"""Jacobian of splittings by solvable parts: unit deviations moved by the derivative of every compiled flow and kick."""
+"""Compiled Jacobian: unit deviations moved by the exact derivative of every flow that a compiled step is made of."""
 
 from __future__ import annotations
 
@@ -18,32 +18,33 @@ if TYPE_CHECKING:
     from canon.array import Array
     from canon.flow.task import Task
 
-__all__ = ["solvable_jacobian"]
+__all__ = ["compiled_jacobian"]
 
 _AT_ONCE = 1 << 14
 """Steps in one call of compiled code: after each Python can handle an interruption."""
 
 
-def solvable_jacobian(task: Task) -> tuple[Array, Array, Array, Array]:
+def compiled_jacobian(task: Task) -> tuple[Array, Array, Array, Array]:
     """Return times, the motion, and its Jacobian as the sum of two arrays, shape (2n, 2n, times).
 
     Parameters
     ----------
     task
-        The motion, of one orbit, by a splitting by solvable parts.
+        The motion, of one orbit, by a splitting by solvable parts or on a Poisson manifold.
 
     Raises
     ------
     NonFiniteStateError
         The motion leaves the finite numbers, or its neighbours part by more than they hold.
     """
-    plan, precision, size = task.plan, fixed_precision(task.precision), len(task.states[0])
+    plan, precision, size = task.plan, fixed_precision(task.precision), len(task.system.rows)
     assert plan.h is not None
     made = tangent_loop(task.system, task.method, precision, size)
     loop, number = made.loop, made.loop.number
     coefficients = steps_between(loop, task.method, plan).coefficients
     buffers = LoopBuffers(loop, *task.states, coefficient_pairs(coefficients, plan.start, plan.h))
-    unit = number.packed(np.diag(made.units).reshape(-1, 1), np.zeros((size**2, 1)))
+    units = np.array(made.units or (1.0,) * size)
+    unit = number.packed(np.diag(units).reshape(-1, 1), np.zeros((size**2, 1)))
     deviations = buffers.e[0, -len(unit) :]
     deviations[:] = unit
     motion, found = [buffers.states()[0]], [number.unpacked(unit.copy())]
@@ -59,9 +60,11 @@ def solvable_jacobian(task: Task) -> tuple[Array, Array, Array, Array]:
                 t,
                 state,
             )
-    units = np.array(made.units)[:, np.newaxis, np.newaxis]
-    high, low = (np.stack([each[k].reshape(size, size).T for each in found], axis=2) / units for k in (0, 1))
-    return plan.instants, np.stack([each[:, 0] for each in motion], axis=1), high, low
+    weights = units[:, np.newaxis, np.newaxis]
+    high, low = (
+        np.stack([each[k].reshape(size, size).T for each in found], axis=2) / weights for k in (0, 1)
+    )
+    return plan.instants, np.stack([each[task.system.rows, 0] for each in motion], axis=1), high, low
 
 
 def _advance(buffers: LoopBuffers, first: int, steps: int, task: Task) -> None:
