@@ -270,9 +270,9 @@ def _system_task(request: Request) -> tuple[Task, MovingSystem]:
     _check_method(chosen, moving)
     orbits_of = [by_name[name] for name in varying]
     if (kept := _KEEPING_CONSTRAINTS.get(chosen.family)) is not None:
-        moving = kept(request.system, motion, moving, exact_numbers(fixed), first, orbits_of)
+        moving = kept(found.system, motion, moving, exact_numbers(fixed), first, orbits_of)
     if chosen.family == "galerkin":
-        moving = with_momenta_and_forces(request.system, motion, moving, exact_numbers(fixed), orbits_of)
+        moving = with_momenta_and_forces(found.system, motion, moving, exact_numbers(fixed), orbits_of)
     if chosen.family == "lie_poisson":
         moving = with_lie_poisson_parts(request.system, moving, exact_numbers(fixed), orbits_of)
     full = _full_states(moving, states, varying, orbits)

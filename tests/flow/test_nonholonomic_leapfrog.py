@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import sympy as sp
 from sympy import cos, sin
+from sympy.physics import mechanics as me
 
 from canon import (
     ConstrainedLagrangian,
@@ -478,6 +479,24 @@ def test_parameters_by_orbit_observables_and_events():
     np.testing.assert_allclose(one["L"], one["x"] * one["y_dot"], atol=1e-15)
     met = one.events[0]
     assert abs(met.y[0] - met.y[1]) < 1e-12
+
+
+@pytest.mark.filterwarnings("ignore:.*steps over the kinks")
+def test_models_of_sympy_and_functions_made_of_pieces():
+    """A spring that pushes and does not pull, taut on the way, as Piecewise, and as SymPy's LagrangesMethod has it."""
+    a, b, c = me.dynamicsymbols("a b c")
+    K = (a.diff() ** 2 + b.diff() ** 2 + c.diff() ** 2) / 2
+    model = me.LagrangesMethod(K - (2 - a) ** 2, [a, b, c], nonhol_coneqs=[c.diff() - b * a.diff()])
+    model.form_lagranges_equations()
+    in_pieces = particle(sp.Piecewise(((2 - x) ** 2, x < 2), (0, True)))
+    run = functools.partial(propagate, t_span=(0, 0.5), y0=[1, 0.5, 0, -0.2, 1, -0.1], step=0.01, samples=5)
+    smooth = run(particle((2 - x) ** 2), method=NonholonomicLeapfrog(4))
+    for system in (model, in_pieces):
+        assert abs(run(system, method=NonholonomicLeapfrog(4)).y - smooth.y).max() < 1e-14
+    ramp = Lagrangian(x.dot**2 / 2 + y.dot**2 / 2 - sp.Max(0, 2 - x) ** 2, [x, y])
+    held = ConstrainedLagrangian(ramp, holonomic=[y - x])
+    slid = propagate(held, (0, 0.5), [1, 1, 0, 0], method=Rattle(4), step=0.01)
+    assert abs(slid["x"] - (2 - np.cos(slid.t))).max() < 1e-9
 
 
 # trouble ---------------------------------------------------------------------------------------------

@@ -73,6 +73,8 @@ class RecognisedSystem:
         The equations, from numbers for the state, t and the parameters at the start.
     unneeded
         Symbols of what was given that the equations do not hold, such as a mass that drops out.
+    system
+        The system as canon writes it: models of others converted, functions made of pieces taken apart.
     """
 
     state: tuple[Symbol, ...]
@@ -80,6 +82,7 @@ class RecognisedSystem:
     parameters: tuple[Symbol, ...]
     derived: Callable[[Mapping[Symbol, float]], FirstOrderMotion]
     unneeded: tuple[Symbol, ...] = ()
+    system: Any = None
 
 
 def recognised(system: Any) -> RecognisedSystem:
@@ -103,6 +106,11 @@ def recognised(system: Any) -> RecognisedSystem:
     if is_heyoka_system(system):
         system = heyoka_field(system)
     system = written_with_signs(system)
+    return replace(_known(system), system=system)
+
+
+def _known(system: Any) -> RecognisedSystem:
+    """Return what is known of a system that canon writes so."""
     if isinstance(system, Lagrangian | ConstrainedLagrangian):
         return _of_lagrangian(system)
     if isinstance(system, UnilateralLagrangian):
