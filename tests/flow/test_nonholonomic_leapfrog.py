@@ -70,7 +70,7 @@ def snakeboard():
 
 
 def contact_oscillators(n):
-    """Coupled oscillators on a contact structure, ẋ + Σ yᵢ żᵢ = 0, as McLachlan and Perlmutter take them: chaotic."""
+    """Oscillators with ẋ + Σ yᵢ żᵢ = 0, McLachlan and Perlmutter's contact oscillator (§ 5.2), coupled: chaotic."""
     q = coordinates(" ".join(["x", *(f"{s}{i}" for i in range(n) for s in "yz")]))
     Y, Z = q[1::2], q[2::2]
     coupled = [Z[i] * Z[(i + 1) % n] for i in range(n)] + [a * b for a, b in zip(Y, Z, strict=True)]
@@ -349,7 +349,7 @@ def test_the_energy_of_a_rolling_disc_is_bounded(start):
 
 @pytest.mark.slow
 def test_where_motion_is_chaotic_the_energy_wanders():
-    """As McLachlan and Perlmutter find of their contact oscillators; canon's verdict says so."""
+    """Reversible steps do not help there, and canon's verdict says so."""
     system = contact_oscillators(3)
     start = start_of(system, [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7], [0, 0.5, -0.2, 0.3, 0.4, -0.6, 0.1])
     motion = propagate(system, (0, 10**5), start, method=NonholonomicLeapfrog(4), step=0.1, samples=2000)
