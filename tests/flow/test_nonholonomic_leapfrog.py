@@ -385,7 +385,7 @@ def test_momenta_along_which_constraints_allow_motion_are_kept():
 
 @pytest.mark.slow
 def test_a_ball_on_a_turntable_goes_in_a_circle():
-    """A homogeneous ball rolls on a circle with 2/7 of the table's rate, wherever it begins (R. H. Weltner 1979)."""
+    """A homogeneous ball rolls on a circle with 2/7 of the table's rate, wherever it begins (K. Weltner 1979)."""
     R, K = sp.Rational(1, 2), phi.dot**2 + theta.dot**2 + psi.dot**2 + 2 * phi.dot * psi.dot * cos(theta)
     L = Lagrangian((x.dot**2 + y.dot**2) / 2 + R**2 * K / 5, [x, y, phi, theta, psi])
     spin = (
