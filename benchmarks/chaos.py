@@ -1,6 +1,6 @@
 """Chaos: what deviations cost beside an orbit, a map of MEGNO beside heyoka, and how often the verdicts err.
 
-    python benchmarks/chaos.py            # costs, a part of the map, verdicts
+    python benchmarks/chaos.py            # costs, a part of the map, verdicts, planets
     python benchmarks/chaos.py --whole    # and the whole map, 256 × 256 orbits over 1000 periods
 
 Seconds are of the processor, all threads together; ratios within one run are what can be compared.
@@ -22,7 +22,7 @@ import numpy as np
 import sympy as sp
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from canon import Gauss, Hamiltonian, Splitting, coordinates, propagate
+from canon import SABA, Gauss, Hamiltonian, Splitting, WisdomHolman, coordinates, propagate
 from canon.flow import (
     Regularity,
     fast_lyapunov_indicator,
@@ -34,6 +34,7 @@ from canon.flow import (
     reversal_test,
     sali,
 )
+from canon.scene import find
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -417,12 +418,70 @@ def verdicts(spans: tuple[int, ...] = (100, 1000)) -> None:
             )
 
 
+# planets ------------------------------------------------------------------------------------------------
+
+
+def of_planets() -> None:
+    """What MEGNO costs beside the orbit of the outer planets, and beside REBOUND's where it is installed."""
+    scene, steps, step = find("outer-solar-system"), 200_000, 200.0
+    start, span = scene.start("1994"), (0.0, steps * step)
+    y0 = [*start.q, *start.p]
+    print(f"\nplanets: the outer solar system, {steps} steps of {step:g} days")
+    print(f"{'':44}{'µs a step':>10}{'with MEGNO':>12}{'ratio':>7}{'MEGNO':>8}")
+
+    def row(name: str, alone: float, beside: float, value: float) -> None:
+        print(
+            f"{name:44}{1e6 * alone / steps:10.3f}{1e6 * beside / steps:12.3f}{beside / alone:7.1f}{value:8.2f}"
+        )
+
+    for method in (
+        WisdomHolman(),
+        WisdomHolman(corrector=17),
+        WisdomHolman(coordinates="democratic-heliocentric"),
+        SABA(4),
+    ):
+        how = {"method": method, "step": step, "samples": 100, "parameters": scene.values}
+        alone, beside = (
+            seconds(functools.partial(follow, scene.hamiltonian, span, y0, **how))
+            for follow in (propagate, megno)
+        )
+        row(f"canon {method}", alone, beside, megno(scene.hamiltonian, span, y0, **how).value)
+    try:
+        import rebound
+    except ImportError:
+        print("REBOUND is not installed here (pip install rebound)")
+        return
+
+    def run(*, indicator: bool, repeats: int = 3) -> tuple[float, float]:
+        best, value = float("inf"), float("nan")
+        gravity, masses = scene.values["G"], [scene.values[f"m{i}"] for i in range(6)]
+        places = np.array(y0, dtype=float).reshape(2, -1, 3)
+        for _ in range(repeats):
+            sim = rebound.Simulation()
+            for m, q, p in zip(masses, *places, strict=True):
+                v = p / m
+                sim.add(m=gravity * m, x=q[0], y=q[1], z=q[2], vx=v[0], vy=v[1], vz=v[2])
+            sim.move_to_com()
+            sim.integrator, sim.dt = "whfast", step
+            sim.integrator.safe_mode = int(indicator)  # which its MEGNO asks for
+            if indicator:
+                sim.init_megno(seed=1)
+            started = time.process_time()
+            sim.integrate(span[1], exact_finish_time=0)
+            best = min(best, time.process_time() - started)
+            value = float(sim.megno()) if indicator else value
+        return best, value
+
+    (alone, _), (beside, value) = run(indicator=False), run(indicator=True)
+    row(f"REBOUND {rebound.__version__} WHFast", alone, beside, value)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--whole", action="store_true", help="the whole map, 256 × 256 orbits")
-    parser.add_argument("--only", choices=["costs", "map", "verdicts"], help="one part")
+    parser.add_argument("--only", choices=["costs", "map", "verdicts", "planets"], help="one part")
     given = parser.parse_args()
     warnings.simplefilter("error", RuntimeWarning)
     if given.only in (None, "costs"):
@@ -431,6 +490,8 @@ def main() -> None:
         map_of_megno(whole=given.whole)
     if given.only in (None, "verdicts"):
         verdicts()
+    if given.only in (None, "planets"):
+        of_planets()
 
 
 if __name__ == "__main__":

@@ -405,6 +405,10 @@ SECTIONS = {
                 ),
                 r"^(\S.*?) {2,}(\d+) +(\d+) +(\d+) +(\d+) +(\d+) +(\d+) +(\d+)$",
             ),
+            Table(
+                ("planets", "µs a step", "with MEGNO", "ratio", "MEGNO"),
+                r"^((?:canon|REBOUND) \S.*?) {2,}([\d.]+) +([\d.]+) +([\d.]+) +([\d.]+)$",
+            ),
         ),
     ),
     "scale_out": Section(

@@ -34,6 +34,14 @@ _SMALL = 10.0
 """Logarithm of the growth between two renormalisations up to which fewer will do."""
 
 
+_STEPS_A_RADIAN = 3
+"""Steps in which the angles of planets move by about a radian."""
+
+
+def _of_length_one(frame: Array) -> Array:
+    return frame / np.linalg.norm(frame, axis=0)
+
+
 class CompiledDeviations:
     """Orbits on their way with deviation vectors beside them.
 
@@ -83,9 +91,13 @@ class CompiledDeviations:
         )
         high, low = (part[:, filled] for part in task.states)
         self.buffers = LoopBuffers(loop, high, low, pairs)
-        if given and self.tangent.units:
-            frame = frame * np.array(self.tangent.units)[:, np.newaxis]
-            frame = frame / np.linalg.norm(frame, axis=0)
+        units = np.array(self.tangent.units)[:, np.newaxis]
+        if given and len(units):
+            frame = _of_length_one(frame * units)
+        elif len(units) and not orthogonal:
+            # Whatever the unit of time: at first coordinates are not to grow by more than they do later.
+            quick = np.full((len(frame) // 2, 1), abs(float(task.plan.h)) * _STEPS_A_RADIAN)
+            frame = _of_length_one(frame / np.concatenate([np.ones_like(quick), quick]))
         self._behind(self.buffers.e)[:] = self._packed(frame)
         self.rows = task.system.rows
         self.renormalise = renormalising_function(deviations, orthogonal=orthogonal)
