@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import sympy as sp
 from scipy.optimize import root
+from sympy.physics.mechanics import LagrangesMethod, dynamicsymbols
 
 from canon import (
     RK4,
@@ -316,6 +317,27 @@ def test_events_between_samples_precisions_and_parameters():
     np.testing.assert_array_equal(
         several.y[:, :, 1], propagate(quartic, (0, 5), [1, 0], parameters={k: 2}, **how).y
     )
+
+
+@pytest.mark.slow
+def test_models_of_sympy_and_lagrangians_without_constraints_are_taken():
+    q = dynamicsymbols("q")
+    model = LagrangesMethod(q.diff() ** 2 / 2 + sp.cos(q), [q])
+    model.form_lagranges_equations()
+    how = {"t_span": (0, 3), "y0": SWING, "method": LOBATTO, "step": 0.1}
+    known = propagate(PENDULUM, **how).y
+    for other in (model, ConstrainedLagrangian(PENDULUM)):
+        np.testing.assert_array_equal(propagate(other, **how).y, known)
+
+
+def test_masses_may_depend_on_velocities():
+    """A relativistic mass on a spring, L = −√(1 − v²) − x²/2; faster than light nothing goes on."""
+    fast = Lagrangian(-sp.sqrt(1 - x.dot**2) - x**2 / 2, [x])
+    motion = propagate(fast, (0, 10), [2, 0], method=GalerkinVariational(3), step=0.05)
+    assert abs(motion.final - propagate(fast, (0, 10), [2, 0]).final).max() < 1e-6
+    assert abs(motion["x_dot"]).max() > 0.9
+    with pytest.raises(NonFiniteStateError, match="do not converge"):
+        propagate(fast, (0, 10), [9, 0], method=GalerkinVariational(3), step=1.0)
 
 
 @pytest.mark.slow

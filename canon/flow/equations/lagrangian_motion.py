@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import sympy as sp
@@ -260,7 +260,7 @@ def _dot(graph: Graph, a: Sequence[int], b: Sequence[int]) -> int:
 
 
 def with_momenta_and_forces(
-    given: Lagrangian | ConstrainedLagrangian,
+    given: Any,
     motion: FirstOrderMotion,
     moving: MovingSystem,
     numbers: Mapping[str, Fraction],
@@ -282,16 +282,18 @@ def with_momenta_and_forces(
     NoDiscreteActionError
         It is no Lagrangian, or has constraints.
     """
+    from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
     from canon.mechanics.lagrange.lagrangian import Lagrangian
 
-    if not isinstance(given, Lagrangian):
+    if not isinstance(given, Lagrangian | ConstrainedLagrangian) or any(constraints_of(given)[1:]):
         raise NoDiscreteActionError(
             f"GalerkinVariational is for a canon.Lagrangian without constraints and does not apply to a {motion.kind}; "
             "Taylor, DOP853, RK4 and Gauss do"
         )
     graph, q, v = motion.graph, motion.q, motion.second
-    L = graph.from_sympy(given.L)
-    forces = [graph.from_sympy(force) for force in given.forces] or [graph.zero] * len(q)
+    lagrangian, *_ = constraints_of(given)
+    L = graph.from_sympy(lagrangian.L)
+    forces = [graph.from_sympy(force) for force in lagrangian.forces] or [graph.zero] * len(q)
     pushed = [graph.add(pair) for pair in zip(graph.gradient(L, q), forces, strict=True)]
     known = {graph.symbol(s): graph.number(numbers[s.name]) for s in motion.parameters if s not in varying}
     found = MomentaAndForces(tuple(graph.gradient(L, v)), tuple(pushed))

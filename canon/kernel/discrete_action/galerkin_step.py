@@ -91,8 +91,8 @@ class _Galerkin:
         Γ, and the residual of its equations, which Newton's change takes the place of.
     place, total
         q and v at a node; Σ_j w_j F_j and the work done.
-    shares
-        Of one node: the factors of p and F in each equation, those of Γ in q and in v.
+    shares, values
+        Of one node: the factors of p and F in each equation, those of Γ in q and in v; p and F, or their slopes.
     equations, masses
         What solves for Γ, and for v.
     changes
@@ -115,6 +115,7 @@ class _Galerkin:
     place: str
     total: str
     shares: str
+    values: str
     equations: LinearSolver
     masses: LinearSolver
     changes: RepeatedChanges
@@ -148,10 +149,11 @@ class _Galerkin:
                         slopes.append(slope)
                         entries.append((half, i, other, k))
         y, e = w.array(size), w.array(size) if compensated else ""
-        gamma, right, place, total = (w.array(k) for k in (degree * n, degree * n, 2 * n, second))
+        sizes = degree * n, degree * n, 2 * n, second, 4 * degree, max(len(slopes), n + second)
+        gamma, right, place, total, shares, values = map(w.array, sizes)
         return cls(
-            w, system, lagrangian, degree, points, y, e, w.array(n), w.array(n), gamma, right, place, total,
-            w.array(4 * degree), equations, masses, RepeatedChanges.of(w), slopes, entries,
+            w, system, lagrangian, degree, points, y, e, w.array(n), w.array(n), gamma, right, place, total, shares,
+            values, equations, masses, RepeatedChanges.of(w), slopes, entries,
         )  # fmt: skip
 
     # what is kept between calls ----------------------------------------------------------------------
@@ -301,13 +303,14 @@ class _Galerkin:
     def _predict(self) -> None:
         """Write the polynomial of the last step continued over Γ."""
         w, n, table = self.w, self.n, self._table(4)
-        for i in range(n):
-            old = [w.load(self.unknown, m * n + i) for m in range(self.degree)]
-            for k in range(self.degree):
+        with w.loop(0, n) as i:
+            places = [w.let(f"add i64 {i}, {m * n}") for m in range(self.degree)]
+            old = [w.load(self.unknown, place) for place in places]
+            for k, place in enumerate(places):
                 total = w.constant(Fraction(0))
                 for m in range(self.degree):
                     total = w.multiply_add(w.load(table, k * self.degree + m), old[m], total)
-                w.store(total, self.unknown, k * n + i)
+                w.store(total, self.unknown, place)
 
     def _at_node(self, j: str, time: str) -> tuple[list[str], str]:
         """Write the state and the time at a node, and the node's shares."""
@@ -347,13 +350,18 @@ class _Galerkin:
             state, clock = self._at_node(j, time)
             nodes = [*self.lagrangian.nodes, *(self.system.velocity[i] for i in others)]
             found = self._evaluated(nodes, state, clock)
+            for k, value in enumerate(found):
+                w.store(value, self.values, k)
             weight = w.load(self._table(1), j)
-            for k in range(s):
-                of_p, of_force = w.load(self.shares, k), w.load(self.shares, s + k)
-                for i in range(n):
-                    total = w.multiply_add(of_p, found[i], w.load(self.right, k * n + i))
-                    w.store(w.multiply_add(of_force, found[n + i], total), self.right, k * n + i)
-            for i, rate in zip([*range(n), *others], found[n:], strict=True):
+            with w.loop(0, n) as i:
+                p, force = w.load(self.values, i), w.load(self.values, w.let(f"add i64 {i}, {n}"))
+                for k in range(s):
+                    place = w.let(f"add i64 {i}, {k * n}")
+                    total = w.multiply_add(w.load(self.shares, k), p, w.load(self.right, place))
+                    total = w.multiply_add(w.load(self.shares, s + k), force, total)
+                    w.store(total, self.right, place)
+                w.store(w.multiply_add(weight, force, w.load(self.total, i)), self.total, i)
+            for i, rate in zip(others, found[2 * n :], strict=True):
                 w.store(w.multiply_add(weight, rate, w.load(self.total, i)), self.total, i)
 
     def _matrix(self, time: str) -> None:
@@ -364,12 +372,29 @@ class _Galerkin:
         with w.loop(0, self.points) as j:
             state, clock = self._at_node(j, time)
             found = self._evaluated(self.slopes, state, clock)
-            for slope, (half, i, other, k) in zip(found, self.entries, strict=True):
-                for row in range(s):
-                    share = w.algebra("mul", w.load(self.shares, half * s + row), slope)
-                    for column in range(s):
-                        entry = (row * n + i) * self.equations.size + column * n + k
-                        factor = w.load(self.shares, (2 + other) * s + column)
-                        total = w.multiply_add(share, factor, w.load(self.equations.matrix, entry))
-                        w.store(total, self.equations.matrix, entry)
+            for k, slope in enumerate(found):
+                w.store(slope, self.values, k)
+            with w.loop(0, len(self.entries)) as each:
+                half, i, other, k = (
+                    w.entry([entry[side] for entry in self.entries], each) for side in range(4)
+                )
+                slope = w.load(self.values, each)
+                of_row, of_column = (
+                    self._part_of_shares(half),
+                    self._part_of_shares(w.let(f"add i64 {other}, 2")),
+                )
+                with w.loop(0, s) as row:
+                    share = w.algebra("mul", w.load(of_row, row), slope)
+                    entries = self.equations.row(self._index(row, n, i))
+                    with w.loop(0, s) as column:
+                        place = self._index(column, n, k)
+                        total = w.multiply_add(share, w.load(of_column, column), w.load(entries, place))
+                        w.store(total, entries, place)
         self.equations.factorise()
+
+    def _part_of_shares(self, part: str) -> str:
+        return self.w.at(self.shares, self.w.let(f"mul i64 {part}, {self.degree}"))
+
+    def _index(self, k: str, size: int, i: str) -> str:
+        """Return k · size + i."""
+        return self.w.let(f"add i64 {self.w.let(f'mul i64 {k}, {size}')}, {i}")
