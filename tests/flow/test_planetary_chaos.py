@@ -102,7 +102,9 @@ def test_the_orbit_is_propagate_s_and_the_direction_may_be_given():
     motion = propagate(PLANETS, (0, 40), CHAOTIC, samples=1, **how)
     np.testing.assert_array_equal(grown.states[:, 0], motion.y[:, -1])
     M = flow_jacobian(PLANETS, (0, 40), CHAOTIC, **how).final
-    weights = np.array([1.0] * 2 + [2.0**-7] * 4 + [1.0] * 2 + [2.0**7] * 4)  # √m nearly, as powers of 2
+    # √(mω) nearly, as powers of 2, ω a radian in three steps.
+    roots = 2.0 ** np.round(np.log2(np.repeat([float(m) for m in MASSES], 2) / 0.3) / 2)
+    weights = np.array([*roots, *1 / roots])
     length = np.linalg.norm(weights * (M @ deviation)) / np.linalg.norm(weights * deviation)
     assert grown.log[0, -1, 0] == pytest.approx(np.log(length), abs=1e-12)
 

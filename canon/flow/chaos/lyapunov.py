@@ -153,8 +153,8 @@ def lyapunov_spectrum(
     Notes
     -----
     Exponents do not depend on units, but how soon they are reached does: take units in which coordinates and momenta
-    are of one size. Splittings by solvable parts measure lengths in √m q and p/√m, in which light planets are. λ₁ of a
-    regular orbit comes to 0 as ln T/T.
+    are of one size. Splittings by solvable parts measure lengths in √(mω) q and p/√(mω), which are in any unit, with ω
+    a third of a radian a step. λ₁ of a regular orbit comes to 0 as ln T/T.
 
     References
     ----------

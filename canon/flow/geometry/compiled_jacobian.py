@@ -39,7 +39,7 @@ def compiled_jacobian(task: Task) -> tuple[Array, Array, Array, Array]:
     """
     plan, precision, size = task.plan, fixed_precision(task.precision), len(task.system.rows)
     assert plan.h is not None
-    made = tangent_loop(task.system, task.method, precision, size)
+    made = tangent_loop(task.system, task.method, precision, size, step=float(plan.h))
     loop, number = made.loop, made.loop.number
     coefficients = steps_between(loop, task.method, plan).coefficients
     buffers = LoopBuffers(loop, *task.states, coefficient_pairs(coefficients, plan.start, plan.h))

@@ -34,14 +34,6 @@ _SMALL = 10.0
 """Logarithm of the growth between two renormalisations up to which fewer will do."""
 
 
-_STEPS_A_RADIAN = 3
-"""Steps in which the angles of planets move by about a radian."""
-
-
-def _of_length_one(frame: Array) -> Array:
-    return frame / np.linalg.norm(frame, axis=0)
-
-
 class CompiledDeviations:
     """Orbits on their way with deviation vectors beside them.
 
@@ -80,8 +72,9 @@ class CompiledDeviations:
             raise ValueError(
                 f"precision={precision.name!r}: deviations are moved in doubles; leave precision out, or 'double'"
             )
-        self.tangent = tangent_loop(task.system, task.method, precision, frame.shape[1], many)
         assert task.plan.h is not None
+        step = float(task.plan.h)
+        self.tangent = tangent_loop(task.system, task.method, precision, frame.shape[1], many, step=step)
         loop, deviations = self.tangent.loop, self.tangent.deviations
         chosen = np.arange(many) if orbits is None else orbits
         self.orbits, lanes = len(chosen), loop.number.lanes
@@ -91,13 +84,9 @@ class CompiledDeviations:
         )
         high, low = (part[:, filled] for part in task.states)
         self.buffers = LoopBuffers(loop, high, low, pairs)
-        units = np.array(self.tangent.units)[:, np.newaxis]
-        if given and len(units):
-            frame = _of_length_one(frame * units)
-        elif len(units) and not orthogonal:
-            # Whatever the unit of time: at first coordinates are not to grow by more than they do later.
-            quick = np.full((len(frame) // 2, 1), abs(float(task.plan.h)) * _STEPS_A_RADIAN)
-            frame = _of_length_one(frame / np.concatenate([np.ones_like(quick), quick]))
+        if given and self.tangent.units:
+            frame = frame * np.array(self.tangent.units)[:, np.newaxis]
+            frame = frame / np.linalg.norm(frame, axis=0)
         self._behind(self.buffers.e)[:] = self._packed(frame)
         self.rows = task.system.rows
         self.renormalise = renormalising_function(deviations, orthogonal=orthogonal)

@@ -31,6 +31,9 @@ __all__ = ["TangentLoop", "has_tangent_loop", "tangent_loop"]
 _KEPT = 32
 """Compiled loops kept for the next call."""
 
+_STEPS_A_RADIAN = 3
+"""Steps in which the angles of planets move by about a radian."""
+
 _INTERLEAVED = 4
 """SIMD registers' worth of orbits stepped together, each with its deviations."""
 
@@ -54,7 +57,13 @@ class TangentLoop:
 
 
 def tangent_loop(
-    system: HamiltonEquations, method: Method, precision: Precision, vectors: int, orbits: int = 1
+    system: HamiltonEquations,
+    method: Method,
+    precision: Precision,
+    vectors: int,
+    orbits: int = 1,
+    *,
+    step: float,
 ) -> TangentLoop:
     """Return the machine code that steps orbits with so many deviations each.
 
@@ -64,6 +73,8 @@ def tangent_loop(
         What to integrate, how, and in which numbers.
     vectors, orbits
         Deviations of each orbit, and how many orbits: many run side by side in SIMD lanes, else the deviations do.
+    step
+        The step size, by which times are measured where lengths of deviations ask for that.
 
     Raises
     ------
@@ -81,7 +92,7 @@ def tangent_loop(
             system, method.stages, deviations, compensated=precision.compensated, newton=newton
         )
     if method.solvable is not None:
-        units = _mass_weights(system)
+        units = _weights(system, step)
         loop = loop_by_solvable_parts(system, method.solvable, precision, vectors, units)
         own = loop.carry - state - size * vectors
         return TangentLoop(
@@ -109,16 +120,18 @@ def has_tangent_loop(method: Method) -> bool:
     return method.family in ("splitting", "solvable", "gauss", "average_vector_field", "lie_poisson")
 
 
-def _mass_weights(system: HamiltonEquations) -> tuple[Fraction, ...]:
-    """Return √m for δq and 1/√m for δp, rounded to powers of 2: δq and δp of light planets are of one size so.
+def _weights(system: HamiltonEquations, step: float) -> tuple[Fraction, ...]:
+    """Return √(mω) for δq and 1/√(mω) for δp, rounded to powers of 2: they are of one size so, of light planets too.
 
-    To multiply with them is a symplectic map. Where p is of no constant mass they are 1.
+    To multiply with them is a symplectic map. Where p is of no constant mass, m is 1; ω is an angle of about a radian
+    in a few steps.
     """
     graph, weights = system.graph, list[Fraction]()
     for velocity, p in zip(system.velocity, system.p, strict=True):
         (inverse,) = graph.gradient(velocity, [p])
         known = exact_value(graph, inverse) if graph.is_constant(inverse) else Fraction(1)
-        half = round(-math.log2(known) / 2) if known > 0 else 0
+        mass = 1 / known if known > 0 else Fraction(1)
+        half = round(math.log2(float(mass) / (_STEPS_A_RADIAN * abs(step))) / 2)
         weights.append(Fraction(2) ** half)
     return (*weights, *(1 / weight for weight in weights))
 
