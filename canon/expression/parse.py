@@ -14,6 +14,7 @@ from sympy import Expr, Rational
 
 from canon.expression.builder import Builder
 from canon.expression.physics_package import written_out
+from canon.expression.remarks import without_remarks
 from canon.expression.symbols.user_input import given_kind
 from canon.expression.text import syntax
 from canon.expression.text.juxtaposition import parse_juxtaposed
@@ -122,7 +123,7 @@ def syntax_of(text: str, scope: Scope) -> syntax.Node:
 
 
 def _syntax(text: str, scope: Scope) -> syntax.Node:
-    text = written_out(unmarked(text))
+    text = written_out(without_remarks(unmarked(text), scope))
     if is_latex(text):
         from canon.expression.latex.grammar import parse_latex  # only here: it loads a parser generator
 
@@ -149,7 +150,7 @@ def statements_of(text: str, scope: Scope) -> tuple[Statement, ...]:
     """
     given_kind(text, str, "an expression of the language")
     given_kind(scope, Scope, "the scope", "write Scope({'x': x}) with the declared names")
-    text = written_out(unmarked(text))
+    text = written_out(without_remarks(unmarked(text), scope))
     if is_latex(text):
         from canon.expression.latex.latex_statement import latex_statements  # only here, as above
 

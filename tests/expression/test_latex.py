@@ -424,7 +424,7 @@ FAULTS = [
     (r"$x.y", 3, "not part of a formula"),
     (r"$x!", 3, "not part of a formula"),
     (r"$\text{if } x", 2, "is not declared"),
-    (r"$\text{where} x", 2, "is not declared"),
+    (r"$\text{weight} x", 2, "is not declared"),
     (r"$asin x", 2, "can be read as"),
     (r"$sinx", 2, "sinx is not declared"),
     (r"$j x", 2, "j is not declared"),

@@ -40,6 +40,7 @@ def test_taken_apart(text, expected):
 
 @given(st.text("ab=;, \n(){}'and", max_size=60))
 def test_nothing_is_lost_and_every_column_stays(text):
+    assume(not text.lstrip().startswith("(a) "))  # the letter of a part: test_remarks.py
     try:
         statements = statements_of(text, Scope())
     except LanguageError as error:

@@ -12,7 +12,7 @@ from canon.cached_property import cached_property
 from canon.exercise.sheet.key_shapes import ASSUMPTIONS
 from canon.exercise.sheet.kind import Kind, Shape
 from canon.expression.parse import Scope
-from canon.expression.symbols.symbol import Coordinate, Momentum, velocity
+from canon.expression.symbols.symbol import Coordinate, Momentum, acceleration, velocity
 from canon.frozen_mapping import FrozenMapping
 
 if TYPE_CHECKING:
@@ -31,6 +31,7 @@ _MAKERS: Mapping[str, Callable[..., Symbol]] = FrozenMapping(
 _MOVING = ("q", "p", "x", "variables", "new_q", "new_p", "quasi")
 """Keys of names that stand for what changes in time."""
 _OF_OMEGA = re.compile(r"w(?:_?[0-9])?")
+_CARTESIAN = re.compile(r"[xyz](?:_?[0-9])?")
 
 
 @dataclass(frozen=True)
@@ -114,10 +115,14 @@ class DeclaredSymbols:
         return names
 
     def _other_names(self, names: Mapping[str, Symbol]) -> Iterator[tuple[str, Symbol]]:
-        """Yield what else names are called: ``omega`` for w, ``p_theta`` for p, and p for ``p_theta``."""
-        yield from (
-            (f"omega{name[1:]}", symbol) for name, symbol in names.items() if _OF_OMEGA.fullmatch(name)
-        )
+        """Yield what else names are called: ``omega`` for w, ``p_theta`` for p, p for ``p_theta``, ``v_x`` for x'."""
+        for name, symbol in names.items():
+            if _OF_OMEGA.fullmatch(name):
+                yield f"omega{name[1:]}", symbol
+            if isinstance(symbol, Coordinate) and _CARTESIAN.fullmatch(name):  # v_theta would be r θ'
+                first, second = velocity(symbol), acceleration(symbol)
+                rates = ((f"v_{name}", first), (f"v_{name}_dot", second), (f"a_{name}", second))
+                yield from (rate for rate in rates if rate[0][0] not in names)  # ax may be a x
         if not (self.is_names("q") and self.is_names("p")):
             return
         pairs = list(zip(self.words("q"), self.words("p"), strict=False))

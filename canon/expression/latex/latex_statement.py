@@ -25,10 +25,15 @@ MAX_SIDES = 100
 _SEEN = 60
 """Characters that are looked at on either side of a cut."""
 _ARROWS = "Rightarrow|Longrightarrow|implies|iff|Leftrightarrow|Longleftrightarrow|therefore|rightarrow|longrightarrow"
+_BETWEEN = (
+    r"\\(?:text|textrm|mbox|mathrm|textit)\s*\{[\s,;~]*"
+    r"(?:and|und|et|thus|so|hence|then|i\.e\.|where|with|mit|wobei|avec|où)[\s,;:~]*\}"
+)
+"""Words between statements."""
 _TOKEN = re.compile(
     r"\\(?:begin|end)\s*\{\s*d?cases\s*\}"
     rf"|\\(?:{_ARROWS})(?![A-Za-z])"
-    r"|\\(?:text|textrm|mbox|mathrm|textit)\s*\{[\s,;~]*(?:and|und|et|thus|so|hence|then|i\.e\.)[\s,;:~]*\}"
+    rf"|{_BETWEEN}|(?<=[\s,.;])(?:and|where|with)(?=[\s,:])"
     r"|\\(?:stackrel|overset)\s*\{[^{}]{0,20}\}\s*\{\s*=\s*\}"
     r"|\\(?:equiv|coloneqq|triangleq|doteq|q?quad|left|right|lbrace|rbrace)(?![A-Za-z])|\\[A-Za-z]+|\\.|:=|[=<>!]=|[-\w⇒∴=≡(){}\[\],;\n"
     + ROW
@@ -48,8 +53,8 @@ _GOES_ON = re.compile(
 _RELATION_FIRST = re.compile(
     r"(?:\s|\\q?quad|\\[,;:! ])*(?:=|\\equiv(?![A-Za-z])|[<>]|\\[lg]eq?(?![A-Za-z]))"
 )
-_ENDS = re.compile(r"(?:[\s.,;~]|\\[,;:! ]|\\q?quad(?![A-Za-z])|\\\\)*$")
-_BEGINS = re.compile(r"(?:[\s~]|\\[,;:! ]|\\q?quad(?![A-Za-z]))*")
+_ENDS = re.compile(rf"(?:[\s.,;~]|\\[,;:! ]|\\q?quad(?![A-Za-z])|\\\\|{_BETWEEN})*$")
+_BEGINS = re.compile(rf"(?:[\s~]|\\[,;:! ]|\\q?quad(?![A-Za-z])|{_BETWEEN}|(?:and|where|with)(?=[\s,:]))*")
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,7 +187,8 @@ def _kind(sign: str) -> str:
         return sign
     if sign in ("\\quad", "\\qquad"):
         return "gap"
-    return "gap" if sign.startswith(("\\text", "\\mbox", "\\mathrm")) and "{" in sign else ""
+    is_word = sign.startswith(("\\text", "\\mbox", "\\mathrm")) and "{" in sign
+    return "gap" if is_word or sign in ("and", "where", "with") else ""
 
 
 def _parts(bare: str, cuts: list[_Cut], signs: list[int]) -> list[tuple[int, int]]:

@@ -115,6 +115,7 @@ class Words:
             return [replace(token, text=token.text)]
         if len(token.atoms) > _MAX_RUN:
             return [token]
+        found = found or self._rate_in_letters(token)
         whole = [[_Part("name", name, 0, len(token.atoms))] for name in found]
         if not found and not bracket and function_name(token.text, self.scope) in _INVERSE:
             whole = [[_Part("function", token.text, 0, len(token.atoms))]]
@@ -131,6 +132,12 @@ class Words:
                 self._differential(token) or (self._before_differential(token) if divided else []) or [token]
             )
         return list(self._tokens(token, ways[0]))
+
+    def _rate_in_letters(self, token: Token) -> list[str]:
+        """Return the rate that programs write as ``xd`` or ``xdd``."""
+        base = self.declared(token.text.rstrip("d")) if "_" not in token.text else []
+        ending = {1: "_dot", 2: "_ddot"}.get(len(token.text) - len(token.text.rstrip("d")), "")
+        return [rate for name in base if ending and self.scope.declares(rate := f"{name}{ending}")]
 
     def _is_a_word(self, token: Token, bracket: bool) -> bool:
         """Tell whether a word means something of its own: a function, a constant, a letter by its name."""

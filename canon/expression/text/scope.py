@@ -122,6 +122,9 @@ class Scope:
             return f"write {OTHER_NAMES[name]}"
         if name in WRITTEN_OUT:
             return WRITTEN_OUT[name]
+        moving = [q for q, symbol in self.names.items() if isinstance(symbol, Coordinate)]
+        if name in ("v", "a") and len(moving) == 1:
+            return f"if a rate is meant, write {moving[0]}' or {moving[0]}''"
         if factors := split(name, self):
             return f"write {factors}"
         known = [*self.names, self.time.name, *self.functions, *FUNCTIONS, *CONSTANTS]

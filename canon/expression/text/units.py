@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from canon.expression.text.scope import Scope
 
-__all__ = ["Unit", "units", "without_units"]
+__all__ = ["Unit", "is_a_unit", "units", "without_units"]
 
 OF_MECHANICS = ("kg", "rad", "Hz", "Pa", "m", "s", "N", "J", "W")
 """Units that may stand without brackets; the other letters are more often a quantity that was not declared."""
@@ -100,6 +100,17 @@ def _declares(unit: str, scope: Scope) -> bool:
     """Whether any letter of a unit is a declared name, so that it could be meant instead."""
     names = _LETTERS.findall(unit)
     return any(name in scope.functions or scope.symbol(name) is not None for name in names)
+
+
+def is_a_unit(text: str) -> bool:
+    """Tell whether a text is a unit of the SI without prefix.
+
+    Examples
+    --------
+    >>> is_a_unit("m/s^2"), is_a_unit("cm"), is_a_unit("x, p")
+    (True, False, False)
+    """
+    return _INSIDE.fullmatch(text) is not None
 
 
 def without_units(text: str, scope: Scope) -> str:

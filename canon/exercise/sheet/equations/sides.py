@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from canon.exercise.sheet.left_sides import is_definition
+from canon.exercise.sheet.left_sides import is_definition, label_of
 from canon.exercise.sheet.quantities.given_functions import GivenFunctions, key_at
 from canon.expression.parse import LanguageError, parse_expression, statements_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from canon.expression.text.scope import Scope
     from canon.expression.text.statement import Side, Statement
@@ -70,6 +71,28 @@ class Sides:
         return (
             is_definition(side.said, asked, self.scope) or self.given(place).worked_out(side.said) is not None
         )
+
+    def without_own_names(self, place: str, sides: Sequence[Side]) -> Sequence[Side]:
+        """Return the sides of a chain without a name that its writer gives to it: F in ``m x'' = F = -k x``.
+
+        Such a name is not declared and stands nowhere else in the claim, so that nothing depends on it.
+        """
+        own = [side for side in sides if self._is_own_name(side)]
+        if len(own) != 1 or len(sides) < 3:
+            return sides
+        self.passed.append(f"{own[0].text.strip()} in {place} is passed over: it is a name of your own")
+        return [side for side in sides if side is not own[0]]
+
+    def _is_own_name(self, side: Side) -> bool:
+        label = label_of(side.said)
+        if label is None or not label.name or label.rates or label.arguments:
+            return False
+        try:
+            parse_expression(side.text, self.scope)
+        except LanguageError:
+            names = re.findall(rf"(?<!\w){re.escape(side.said)}(?!\w)", repr(self.keys))
+            return len(names) == 1
+        return False
 
     def is_unknown(self, place: str, side: Side) -> bool:
         """Tell whether a side is made of functions that nobody gave."""

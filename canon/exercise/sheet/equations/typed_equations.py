@@ -82,7 +82,7 @@ def _unnumbered(place: str, texts: list[Any], known: Sides) -> list[Any]:
 
 def _chain(place: str, text: str, statement: Statement, known: Sides) -> list[str]:
     """Return the equations that a chain says, definitions in it passed over."""
-    sides = statement.sides
+    sides = known.without_own_names(place, statement.sides)
     rest = [side for side in sides if not known.is_origin(place, side, "claim")]
     if len(rest) == len(sides):
         links = [field_texts.equation_between(a, b) for a, b in pairwise(sides)]

@@ -6,19 +6,27 @@ What is not declared and stands alone, or squared, before ``=`` is put in wherev
 from __future__ import annotations
 
 import re
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from canon.exercise.sheet.left_sides import label_of
 from canon.expression.parse import LanguageError, parse_expression, statements_of
-from canon.expression.text.notation import is_latex
+from canon.expression.symbols.symbol import (
+    Coordinate,
+    Momentum,
+    Rate,
+    acceleration,
+    time_derivative,
+    velocity,
+)
+from canon.expression.text.declared_names import key_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from sympy import Expr, Symbol
+    from sympy import Basic, Expr, Symbol
 
     from canon.exercise.sheet.left_sides import Label
     from canon.expression.text.scope import Scope
@@ -56,58 +64,163 @@ def without_abbreviations(
     >>> without_abbreviations(["x'' + w^2 x = 0, w^2 = k/m"], scope, lambda label: False)
     ['k*x/m + x_ddot = 0']
     """
-    if any(is_latex(text) for text in texts) or sum(map(len, texts)) > _LONGEST:
+    if sum(map(len, texts)) > _LONGEST:
         return None
     statements = [s for text in texts for s in statements_of(text, scope)]
-    put: dict[Symbol, Expr] = {}
-    kept: list[Statement] = []
-    for statement in statements:
-        found = _definition(statement, scope, is_asked) if len(statements) > 1 else None
-        if found is None:
-            kept.append(statement)
-        else:
-            put[found[0]] = found[1]
-    if not put or not kept or len(put) > _MOST:
+    found = [_definition(each, scope, is_asked) if len(statements) > 1 else None for each in statements]
+    kept = [each for each, definition in zip(statements, found, strict=True) if definition is None]
+    defined = [definition for definition in found if definition is not None]
+    if not kept or not 0 < len({each.name for each in defined}) == len(defined) <= _MOST:
         return None
-    known = replace(scope, names={**scope.names, **{symbol.name: symbol for symbol in put}})
+    known = replace(scope, names={**scope.names, **{each.name: each.symbol for each in defined}})
+    if any(each.by_rate and not _is_used(each, kept, known) for each in defined):  # x' = c
+        return None
+    put = {symbol: value for each in defined for symbol, value in each.values(scope).items()}
     made = [_with(statement, known, put) for statement in kept]
     return None if None in made else [text for text in made if text is not None]
 
 
-def _definition(
-    statement: Statement, scope: Scope, is_asked: Callable[[Label], bool]
-) -> tuple[Symbol, Expr] | None:
-    """Return the name that a statement defines, and its value; None where it defines none."""
+@dataclass(frozen=True)
+class _Definition:
+    """A name that an answer defines: a number or a length of time, or what moves, whose rates follow."""
+
+    name: str
+    value: Expr
+    moves: bool
+    is_root: bool = False
+    by_rate: bool = False
+
+    @property
+    def symbol(self) -> Symbol:
+        """What it is read as: what moves has rates, and no d/dt takes it for a constant."""
+        if self.moves:
+            return Coordinate(self.name, real=True)
+        return sp.Symbol(self.name, positive=True) if self.is_root else sp.Symbol(self.name, real=True)
+
+    def values(self, scope: Scope) -> dict[Symbol, Expr | None]:
+        """Return its value, and its rates where they are; None for a rate that this question has no symbol of."""
+        found: dict[Symbol, Expr | None] = {self.symbol: self.value}
+        if self.moves:
+            q = [symbol for symbol in scope.names.values() if isinstance(symbol, Coordinate)]
+            first = _rate(self.value, q, scope)
+            found[velocity(self.symbol)] = first
+            found[acceleration(self.symbol)] = None if first is None else _rate(first, q, scope)
+        return found
+
+
+def _rate(value: Expr, q: Sequence[Symbol], scope: Scope) -> Expr | None:
+    """Return dvalue/dt along the motion; None where it holds what has no rate here."""
+    has_none = [
+        s for s in value.free_symbols if _moves(s, scope) and s not in (*q, *map(velocity, q), scope.time)
+    ]
+    return None if has_none else time_derivative(value, q, scope.time)
+
+
+def _moves(symbol: Basic, scope: Scope) -> bool:
+    return isinstance(symbol, Coordinate | Momentum | Rate) or scope.moves(str(symbol))
+
+
+def _moves_in(value: Expr, scope: Scope) -> bool:
+    return any(_moves(symbol, scope) for symbol in value.free_symbols)
+
+
+def _definition(statement: Statement, scope: Scope, is_asked: Callable[[Label], bool]) -> _Definition | None:
+    """Return what a statement defines; None where it defines nothing."""
     if len(statement.sides) != 2:
         return None
     left, right = statement.sides
-    said = re.sub(r"\s", "", _WHERE.sub(r"\1", left.text))
+    if (rate := _rate_alone(left, scope)) is not None and not _is_asked(left, is_asked):
+        return _by_its_rate(rate, right, scope)
+    said = _said(left)
     base = _SQUARED.sub("", said)
-    label = label_of(base)
-    if label is None or not label.name or label.rates or label.arguments or is_asked(label):
-        return None
-    if scope.declares(label.name) or label.name in scope.functions or label.name == scope.time.name:
+    name = _new_name(base, scope, is_asked)
+    if not name:
         return None
     try:
         value = parse_expression(right.text, scope)
     except LanguageError:
         return None
-    return sp.Symbol(label.name, positive=True), sp.sqrt(value) if base != said else value
+    is_root = base != said
+    value = sp.sqrt(value) if is_root else value
+    return _Definition(name, value, _moves_in(value, scope), is_root)
 
 
-def _with(statement: Statement, scope: Scope, put: dict[Symbol, Expr]) -> str | None:
+def _said(side: Side) -> str:
+    """Return a side in plain spelling, without the word before it: ``where ω₀² = g/l``."""
+    plain = _WHERE.sub(r"\1", side.text)
+    return side.said if plain == side.text else re.sub(r"\s", "", plain)
+
+
+def _new_name(said: str, scope: Scope, is_asked: Callable[[Label], bool]) -> str:
+    """Return the name that a side is; empty where it is none, or declared, or that of the answer."""
+    label = label_of(said)
+    if label is None or not label.name or label.rates or label.arguments or is_asked(label):
+        return ""
+    return "" if key_of(label.name) in {key_of(name) for name in scope.spelled} else label.name
+
+
+def _rate_alone(side: Side, scope: Scope) -> Symbol | None:
+    """Return the velocity that a side is, and nothing else."""
+    label = label_of(side.said)
+    symbol = scope.symbol(f"{label.name}_dot") if label and label.rates == 1 and not label.arguments else None
+    return symbol if isinstance(symbol, Rate) else None
+
+
+def _is_asked(side: Side, is_asked: Callable[[Label], bool]) -> bool:
+    label = label_of(side.said)
+    return label is not None and is_asked(label)
+
+
+def _by_its_rate(rate: Symbol, right: Side, scope: Scope) -> _Definition | None:
+    """Return the name that ``x' = v`` or ``x' = p/m`` defines; None where it is not one name times something."""
+    words = dict.fromkeys(re.findall(r"(?<!\\)\b[A-Za-z]\w{0,9}", right.text))
+    for word in [word for word in words if _new_name(word, scope, lambda _: False)][:_MOST]:
+        symbol = sp.Symbol(word, real=True)
+        try:
+            value = parse_expression(right.text, replace(scope, names={**scope.names, word: symbol}))
+        except LanguageError:
+            continue
+        factor = value.diff(symbol)
+        if factor != 0 and factor.free_symbols <= {*scope.names.values()} and value.subs(symbol, 0) == 0:
+            return (
+                None
+                if _moves_in(factor, scope)
+                else _Definition(word, rate / factor, moves=True, by_rate=True)
+            )
+    return None
+
+
+def _with(statement: Statement, scope: Scope, put: dict[Symbol, Expr | None]) -> str | None:
     """Return a statement with values in place of names; None where a side that holds one can't be read."""
     sides: list[str] = []
     for side in statement.sides:
         plain = _plain(side, scope, put)
         if plain is None and not label_of(side.said):
             return None
-        sides.append(plain or side.said)
+        sides.append(plain or side.text.strip())
     return " = ".join(sides)
 
 
-def _plain(side: Side, scope: Scope, put: dict[Symbol, Expr]) -> str | None:
+def _is_used(definition: _Definition, statements: Sequence[Statement], scope: Scope) -> bool:
+    """Tell whether a name, or a rate of it, stands in one of the statements."""
+    symbols = definition.values(scope).keys()
+    return any(
+        not symbols.isdisjoint(_read(side, scope).free_symbols) for each in statements for side in each.sides
+    )
+
+
+def _read(side: Side, scope: Scope) -> Expr:
+    """Return what a side says; nothing where it can't be read."""
     try:
-        return str(parse_expression(_WHERE.sub(r"\1", side.text), scope).xreplace(put))
+        return parse_expression(_WHERE.sub(r"\1", side.text), scope)
+    except LanguageError:
+        return sp.S.Zero
+
+
+def _plain(side: Side, scope: Scope, put: dict[Symbol, Expr | None]) -> str | None:
+    try:
+        read = parse_expression(_WHERE.sub(r"\1", side.text), scope)
     except LanguageError:
         return None
+    values = {symbol: put[symbol] for symbol in read.free_symbols if symbol in put}
+    return None if None in values.values() else str(read.xreplace(values))
