@@ -66,10 +66,7 @@ def without_abbreviations(
     """
     if sum(map(len, texts)) > _LONGEST:
         return None
-    statements = [s for text in texts for s in statements_of(text, scope)]
-    found = [_definition(each, scope, is_asked) if len(statements) > 1 else None for each in statements]
-    kept = [each for each, definition in zip(statements, found, strict=True) if definition is None]
-    defined = [definition for definition in found if definition is not None]
+    defined, kept = _apart([s for text in texts for s in statements_of(text, scope)], scope, is_asked)
     if not kept or not 0 < len({each.name for each in defined}) == len(defined) <= _MOST:
         return None
     known = replace(scope, names={**scope.names, **{each.name: each.symbol for each in defined}})
@@ -78,6 +75,21 @@ def without_abbreviations(
     put = {symbol: value for each in defined for symbol, value in each.values(scope).items()}
     made = [_with(statement, known, put) for statement in kept]
     return None if None in made else [text for text in made if text is not None]
+
+
+def _apart(
+    statements: Sequence[Statement], scope: Scope, is_asked: Callable[[Label], bool]
+) -> tuple[list[_Definition], list[Statement]]:
+    """Return what an answer defines, and its other statements; one alone defines nothing."""
+    defined: list[_Definition] = []
+    kept: list[Statement] = []
+    for statement in statements:
+        found = _definition(statement, scope, is_asked) if len(statements) > 1 else None
+        if found is None:
+            kept.append(statement)
+        else:
+            defined.append(found)
+    return defined, kept
 
 
 @dataclass(frozen=True)
