@@ -1,8 +1,8 @@
-r"""Remarks around a formula: the letter of a part before it, words in brackets or the unit of its sides behind it.
+r"""Remarks around a formula: the letter or number that it has, words in brackets or the unit of its sides behind it.
 
-``(a) m x'' = -k x``, ``m x'' = -k x (harmonic oscillator)``, ``m \ddot x = -k x \quad \text{(Newton)}``,
-``m x'' = -k x [N]``. They are passed over only where nothing in them can be a factor: no letter is declared, no word is
-made of declared letters, and a unit says nothing that the formula does not say.
+``(a) m x'' = -k x``, ``m \ddot x = -k x \quad (2)``, ``m x'' = -k x (harmonic oscillator)``, ``m x'' = -k x [N]``. They
+are passed over where nothing in them can be a factor: a wide gap sets them apart, no letter is declared, no word is
+made of declared letters, and a unit says nothing that the formula does not say. What may be a factor is asked about.
 """
 
 from __future__ import annotations
@@ -20,7 +20,20 @@ if TYPE_CHECKING:
 
 __all__ = ["without_remarks"]
 
-_PART = re.compile(r"\s*\(([a-h]|i{1,3}|iv|v)\)(?=[ \t]{1,9}[^\s=+*/^-])")
+_NUMBER = r"[1-9]\d{0,2}(?:\.\d{1,2})?[a-z]?"
+_ROMAN = r"i{1,3}|iv|v|I{1,3}|IV|V"
+_BLANK = r"[ \t~]|\\[,;:! ]"
+_WIDE = r"\\q{1,2}uad(?![A-Za-z])|\\hfill(?![A-Za-z])|\\hspace\*?\{[^{}]{1,12}\}|\.{3,9}|…|-{2,9}|—"
+_BEFORE = re.compile(
+    rf"(?P<lead>\s*(?:\$\$?|\\\[|\\\()?\s*)(?:[(\[](?P<name>{_NUMBER}|[a-h]|{_ROMAN})[)\]]|(?P<point>[1-9]\d?)\.)"
+    rf"(?P<gap>(?:{_BLANK}|{_WIDE}){{1,9}})(?=[^\s=+*/^-])"
+)
+"""The number or letter of an equation or a part before it."""
+_BEHIND = re.compile(
+    rf"(?<=[\w)\]}}'′″.,])(?P<gap>(?:{_BLANK}|{_WIDE}){{1,9}})(?:\\(?:text|mathrm)\s?\{{)?\s?"
+    rf"[(\[](?P<name>{_NUMBER}|[a-h]|{_ROMAN}|\*{{1,3}})[)\]]\}}?(?=\s*(?:\$\$?|\\\]|\\\))?[\s.,]*(?:$|\\\\))"
+)
+"""The same behind an equation, at the end of a text or a row."""
 _WORDS = re.compile(r"(?<=[\w)\]}'′″])[ \t]{1,9}\(([A-Za-z][A-Za-z'’ -]{2,60})\)[\s.]{0,9}$")
 _UPRIGHT = re.compile(
     r"(?:\s|~|\\[,;:! ]|\\q{1,2}uad){0,9}\\(?:text|textrm|textit|mathrm)\s?"
@@ -65,7 +78,7 @@ def without_remarks(text: str, scope: Scope) -> str:
     Raises
     ------
     LanguageError
-        Where a letter before the formula is declared, or all of a unit: ``x = A cos(w t) [m]`` with a mass m.
+        Where a number, a declared letter, or a unit in declared letters may be a factor as well: ``x = … (2)``.
 
     Examples
     --------
@@ -75,19 +88,18 @@ def without_remarks(text: str, scope: Scope) -> str:
     >>> without_remarks("(a) x'' = -x (harmonic oscillator)", scope).strip(), without_remarks("x' = 1 (x)", scope)
     ("x'' = -x", "x' = 1 (x)")
     """
-    if len(text) > MAX_CHARACTERS or not re.search(r"\(|\[|\\text|\\mathrm", text):
+    if len(text) > MAX_CHARACTERS or not re.search(r"[(\[]|\\text|\\mathrm|\s*\d\d?\.\s", text):
         return text
+    text = _without_number_before(text, scope) if "=" in text else text
+    text = _without_numbers_behind(text, scope)
     words = Words(text, scope)
-    if (part := _PART.match(text)) and "=" in text:
-        if scope.declares(part[1]):
-            reason = f"is ({part[1]}) the letter of a part, or a factor?"
-            raise LanguageError(
-                text, part.start(1), reason, "leave the letter out, or write * behind a factor"
-            )
-        text = " " * part.end() + text[part.end() :]
     if (remark := _WORDS.search(text)) and _says_nothing(remark[1], words):
         return text[: remark.start()]
-    if (remark := _UPRIGHT.search(text)) and _is_behind(text, remark) and _says_nothing(remark[1], words):
+    if (
+        (remark := _UPRIGHT.search(text))
+        and _is_behind(text, remark.start())
+        and _says_nothing(remark[1], words)
+    ):
         return text[: remark.start()] + remark[2]
     if (unit := _UNIT.search(text)) and "=" in text and is_a_unit(unit[1]):
         letters = re.findall("[A-Za-zΩ]+", unit[1])
@@ -98,9 +110,63 @@ def without_remarks(text: str, scope: Scope) -> str:
     return text
 
 
-def _is_behind(text: str, remark: re.Match[str]) -> bool:
+def _without_number_before(text: str, scope: Scope) -> str:
+    found = _BEFORE.match(text)
+    if found is None:
+        return text
+    name, lead = found["name"] or found["point"], found["lead"]
+    if not re.search(_WIDE, found["gap"]) and _may_be_a_factor(name, scope):
+        shown = text[found.end("lead") : found.start("gap")]
+        raise _asked(text, found.end("lead") + 1, shown, f"{shown}*")
+    return f"{lead}{' ' * (found.end() - len(lead))}{text[found.end() :]}"
+
+
+def _without_numbers_behind(text: str, scope: Scope) -> str:
+    """Return a text without the numbers behind its rows."""
+    pieces: list[str] = []
+    at = 0
+    for found in _BEHIND.finditer(text):
+        before = text[: found.start()].rstrip(" ~.,")
+        if not _is_behind(text, found.start()) or _calls(before, scope):
+            continue
+        shown = text[found.end("gap") : found.end()].strip()
+        if (
+            not re.search(_WIDE, found["gap"])
+            and _may_be_a_factor(found["name"], scope)
+            and not before.endswith("= 0")
+        ):
+            raise _asked(text, found.end("gap") + 1, shown, f"*{shown}")
+        pieces += (text[at : found.start()], " " * (found.end() - found.start()))
+        at = found.end()
+    return "".join((*pieces, text[at:]))
+
+
+def _may_be_a_factor(name: str, scope: Scope) -> bool:
+    """Tell whether what stands in brackets beside a formula can be multiplied with it and changes it then."""
+    letters = name.lstrip("0123456789.")
+    if name == letters:
+        return scope.declares(name)
+    return name != "1" and (not letters or scope.declares(letters))
+
+
+def _calls(before: str, scope: Scope) -> bool:
+    r"""Tell whether a text ends with what takes an argument in brackets: ``sin (2)``, ``2 \cdot (3)``."""
+    word = re.search(r"(\\?)([A-Za-z]+)$", before)
+    if word is None:
+        return False
+    if word[1]:
+        return word[2] not in GREEK.values() and not word[2].startswith("var")
+    return word[2] in scope.functions or function_name(word[2], scope) != ""
+
+
+def _asked(text: str, column: int, shown: str, factor: str) -> LanguageError:
+    reason = f"{shown} may be a factor, or the number of the equation"
+    return LanguageError(text, column, reason, f"write {factor} for a factor, or leave it out")
+
+
+def _is_behind(text: str, start: int) -> bool:
     """Tell whether a remark stands behind a whole formula: no sign before it asks for what follows."""
-    return re.search(r"[\w)\]}'′″]$", text[: remark.start()].rstrip()) is not None
+    return re.search(r"[\w)\]}'′″]$", text[:start].rstrip(" ~.,")) is not None
 
 
 def _says_nothing(remark: str, words: Words) -> bool:

@@ -181,9 +181,13 @@ class _Plain:
             found = without_abbreviations(texts, self.scope, is_asked_for)
         except LanguageError:  # it is told where the answer is read
             return value
-        if found is None:
+        if found is None or (found.unused and "multipliers" in self.of.keys):  # T = 17 m1 may be meant as one
             return value
-        return found if isinstance(value, list) or len(found) > 1 else found[0]
+        self.found.passed += [
+            f"{said} in {key} is passed over: the name is not declared, and nothing here uses it"
+            for said in found.unused
+        ]
+        return found.texts if isinstance(value, list) or len(found.texts) > 1 else found.texts[0]
 
     def without_remainders(self, key: str, value: Any) -> Any:
         """Return expansions without ``+ O(x^5)`` and ``+ …``, which is told."""

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from canon.expression.latex.latex_layout import CASES, PART, ROW, without_layout
-from canon.expression.text.statement import Side, Statement, unwrapped
+from canon.expression.text.statement import NAMED, Side, Statement, opened, unwrapped
 from canon.expression.text.tokens import LanguageError
 
 if TYPE_CHECKING:
@@ -55,6 +55,9 @@ _RELATION_FIRST = re.compile(
 )
 _ENDS = re.compile(rf"(?:[\s.,;~]|\\[,;:! ]|\\q?quad(?![A-Za-z])|\\\\|{_BETWEEN})*$")
 _BEGINS = re.compile(rf"(?:[\s~]|\\[,;:! ]|\\q?quad(?![A-Za-z])|{_BETWEEN}|(?:and|where|with)(?=[\s,:]))*")
+
+
+_DEFINES = re.compile(rf"(?:[\s~]|\\[,;:! ]|\\q?quad(?![A-Za-z])|{_BETWEEN})*{NAMED}(?:=|\\equiv)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +114,7 @@ def spans(text: str) -> tuple[str, tuple[tuple[Span, ...], ...]]:
     >>> [[bare[side.start : side.end] for side in sides] for sides in statements]
     [['\\dot q', '\\frac{p}{m}'], ['\\dot p', '-kq', 'F']]
     """
-    bare = unwrapped(without_layout(text))
+    bare = opened(unwrapped(without_layout(text)))
     found = _cuts(bare)
     if found is None:  # brackets that do not close: the grammar says where
         return _clean(bare), ((_trimmed(bare, 0, len(bare)),),)
@@ -199,7 +202,13 @@ def _parts(bare: str, cuts: list[_Cut], signs: list[int]) -> list[tuple[int, int
         left = bisect_left(signs, cut.start) > bisect_left(signs, start)
         right = bisect_left(signs, stop) > bisect_left(signs, cut.start)
         before, after = bare[max(start, cut.start - _SEEN) : cut.start], bare[cut.end : cut.end + _SEEN]
-        if _parts_here(cut.kind, before, after, both=left and right):
+        alone = (
+            cut.kind in (",", "gap")
+            and not left
+            and bare[start : cut.start].strip()
+            and _DEFINES.match(after)
+        )
+        if alone or _parts_here(cut.kind, before, after, both=left and right):
             parts.append((start, cut.start))
             start = cut.end
     parts.append((start, len(bare)))

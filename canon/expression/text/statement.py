@@ -14,7 +14,7 @@ from itertools import pairwise
 
 from canon.expression.text.tokens import LanguageError
 
-__all__ = ["Side", "Statement", "plain_statements", "unwrapped"]
+__all__ = ["NAMED", "Side", "Statement", "opened", "plain_statements", "unwrapped"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +52,9 @@ _EQUALS = re.compile(r"(?<![<>!:=≠])(?:==|:=|=|≡|≔)(?![=>])")
 _ENDS = re.compile(r"[;\n]|⇒|⟹|∴|=>|(?<=\s)(?:and|where|with)(?=\s)")
 MAX_SIDES = 100
 """Most sides in one field."""
+NAMED = r"(?:(?:where|with)\s)?\s*\\?[^\W\d]\w{0,11}(?:_\{\w{1,9}\})?\s*(?:\^2|\^\{2\}|\*\*2|²)?\s*"
+"""A name before ``=``, or its square."""
+_IN_BRACKETS = re.compile(rf"\s\({NAMED}=[^=]{{1,90}}\)[\s.]*$")
 
 
 def plain_statements(text: str) -> tuple[Statement, ...]:
@@ -72,7 +75,7 @@ def plain_statements(text: str) -> tuple[Statement, ...]:
     >>> plain_statements("H(q, p) = p**2/2")[0].sides[0].said
     'H(q,p)'
     """
-    text = unwrapped(text)
+    text = opened(unwrapped(text))
     depths = _depths(text)
     if depths is None:  # brackets that do not close: the parser says where
         return (Statement((_side(text, 0, len(text)),)),)
@@ -114,6 +117,23 @@ def unwrapped(text: str) -> str:
     return f"{text[:begin]} {text[begin + 1 : end - 1]} {text[end:]}"
 
 
+def opened(text: str) -> str:
+    """Return a text with a comma in place of the brackets around a definition behind it.
+
+    Examples
+    --------
+    >>> opened("I θ'' = -k θ (I = m l²)"), opened("x = a (b + c)")
+    ("I θ'' = -k θ ,I = m l² ", 'x = a (b + c)')
+    """
+    found = _IN_BRACKETS.search(text)
+    if found is None or not text[: found.start()].strip():
+        return text
+    begin, end = found.start() + 1, text.rindex(")")
+    if _depths(text[begin + 1 : end]) is None:
+        return text
+    return f"{text[:begin]},{text[begin + 1 : end]} {text[end + 1 :]}"
+
+
 def _depths(text: str) -> list[int] | None:
     """Return how many brackets are open at each character; None where they do not close."""
     depths: list[int] = []
@@ -136,6 +156,9 @@ def _parts(text: str, depths: list[int], signs: list[int]) -> list[tuple[int, in
     start = 0
     for stop, after in [*((m.start(), m.end()) for m in ends), (len(text), len(text))]:
         inside = signs[bisect(signs, start - 1) : bisect(signs, stop - 1)]
+        if inside and (behind := _definition_behind(text, depths, start, inside[0])):
+            parts.append((start, behind - 1))
+            start = behind
         for left, right in pairwise(inside):
             commas = [i for i in range(left, right) if text[i] == "," and depths[i] == 0]
             if commas:
@@ -144,6 +167,20 @@ def _parts(text: str, depths: list[int], signs: list[int]) -> list[tuple[int, in
         parts.append((start, stop))
         start = after
     return parts
+
+
+def _definition_behind(text: str, depths: list[int], start: int, sign: int) -> int:
+    """Return where the name before a sign begins, if a comma sets it apart from an expression; 0 if none does.
+
+    ``½ m v², v = x'`` is an expression, and what v stands for.
+    """
+    commas = [i for i in range(start, sign) if text[i] == "," and depths[i] == 0]
+    apart = (
+        bool(commas)
+        and text[start : commas[-1]].strip() != ""
+        and re.fullmatch(NAMED, text[commas[-1] + 1 : sign].lstrip())
+    )
+    return commas[-1] + 1 if apart else 0
 
 
 def _side(text: str, start: int, end: int) -> Side:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import sympy as sp
 
@@ -22,9 +22,10 @@ from canon.expression.symbols.symbol import (
     velocity,
 )
 from canon.expression.text.declared_names import key_of
+from canon.expression.text.vocabulary import CONSTANTS, OTHER_NAMES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from sympy import Basic, Expr, Symbol
 
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
     from canon.expression.text.statement import Side, Statement
 
-__all__ = ["without_abbreviations"]
+__all__ = ["Abbreviated", "without_abbreviations"]
 
 _SQUARED = re.compile(r"(?:\^2|\*\*2|²|\^\{2\})$")
 _WHERE = re.compile(r"^(\s*)(?:where|with|and)\b", re.IGNORECASE)
@@ -41,9 +42,16 @@ _MOST = 8
 _LONGEST = 2_000
 
 
+class Abbreviated(NamedTuple):
+    """The fields of an answer with what they abbreviate put in, and the definitions that nothing uses."""
+
+    texts: list[str]
+    unused: list[str]
+
+
 def without_abbreviations(
     texts: Sequence[str], scope: Scope, is_asked: Callable[[Label], bool]
-) -> list[str] | None:
+) -> Abbreviated | None:
     """Return the fields of an answer with what they abbreviate put in; None where they abbreviate nothing.
 
     Parameters
@@ -61,35 +69,68 @@ def without_abbreviations(
     >>> from canon.expression import Scope
     >>> x, (m, k) = coordinates("x"), parameters("m k")
     >>> scope = Scope({s.name: s for s in (x, m, k)})
-    >>> without_abbreviations(["x'' + w^2 x = 0, w^2 = k/m"], scope, lambda label: False)
-    ['k*x/m + x_ddot = 0']
+    >>> without_abbreviations(["x'' + w^2 x = 0, w^2 = k/m, f = 3"], scope, lambda label: False)
+    Abbreviated(texts=['k*x/m + x_ddot = 0'], unused=['f = 3'])
     """
     if sum(map(len, texts)) > _LONGEST:
         return None
-    defined, kept = _apart([s for text in texts for s in statements_of(text, scope)], scope, is_asked)
-    if not kept or not 0 < len({each.name for each in defined}) == len(defined) <= _MOST:
+    statements = [s for text in texts for s in statements_of(text, scope)]
+    defined, kept = _apart(statements, scope, is_asked) if len(statements) > 1 else ([], [])
+    if not kept or not 0 < len(defined) <= _MOST:
         return None
-    known = replace(scope, names={**scope.names, **{each.name: each.symbol for each in defined}})
-    if any(each.by_rate and not _is_used(each, kept, known) for each in defined):  # x' = c
+    known = _with_names(scope, defined)
+    unused = [
+        each for each in defined if not _is_used(each, [s for s in statements if s is not each.said], known)
+    ]
+    if any(each.by_rate for each in unused):  # x' = c
         return None
-    put = {symbol: value for each in defined for symbol, value in each.values(scope).items()}
+    put = _put_in(defined, scope)
     made = [_with(statement, known, put) for statement in kept]
-    return None if None in made else [text for text in made if text is not None]
+    told = [" = ".join(side.text.strip().lstrip("$ ") for side in each.said.sides) for each in unused]
+    return None if None in made else Abbreviated([text for text in made if text is not None], told)
 
 
 def _apart(
     statements: Sequence[Statement], scope: Scope, is_asked: Callable[[Label], bool]
 ) -> tuple[list[_Definition], list[Statement]]:
-    """Return what an answer defines, and its other statements; one alone defines nothing."""
+    """Return what an answer defines, each by what was defined before it, and the other statements.
+
+    What is said of a name a second time is an equation: ``F = -k x, F = m x''``.
+    """
     defined: list[_Definition] = []
-    kept: list[Statement] = []
-    for statement in statements:
-        found = _definition(statement, scope, is_asked) if len(statements) > 1 else None
-        if found is None:
-            kept.append(statement)
-        else:
-            defined.append(found)
+    kept = list(statements)
+    found = True
+    while found:
+        found = False
+        for statement in sorted(kept, key=_names_no_constant):
+            definition = _definition(statement, _with_names(scope, defined), is_asked)
+            value = None if definition is None else _filled(definition.value, _put_in(defined, scope))
+            if definition is not None and value is not None:
+                defined.append(replace(definition, value=value, moves=_moves_in(value, scope)))
+                kept.remove(statement)
+                found = True
+                break
     return defined, kept
+
+
+def _names_no_constant(statement: Statement) -> bool:
+    """Tell the definitions of I, e and the like, which come first: they are none of the constants of these names."""
+    label = label_of(_said(statement.sides[0]))
+    return label is None or label.name not in (*CONSTANTS, *OTHER_NAMES)
+
+
+def _with_names(scope: Scope, defined: Sequence[_Definition]) -> Scope:
+    return replace(scope, names={**scope.names, **{each.name: each.symbol for each in defined}})
+
+
+def _put_in(defined: Sequence[_Definition], scope: Scope) -> dict[Symbol, Expr | None]:
+    return {symbol: value for each in defined for symbol, value in each.values(scope).items()}
+
+
+def _filled(read: Expr, put: Mapping[Symbol, Expr | None]) -> Expr | None:
+    """Return an expression with values in place of names; None where one has no value."""
+    values = {symbol: put[symbol] for symbol in read.free_symbols if symbol in put}
+    return None if None in values.values() else read.xreplace(values)
 
 
 @dataclass(frozen=True)
@@ -97,6 +138,7 @@ class _Definition:
     """A name that an answer defines: a number or a length of time, or what moves, whose rates follow."""
 
     name: str
+    said: Statement
     value: Expr
     moves: bool
     is_root: bool = False
@@ -142,7 +184,7 @@ def _definition(statement: Statement, scope: Scope, is_asked: Callable[[Label], 
         return None
     left, right = statement.sides
     if (rate := _rate_alone(left, scope)) is not None and not _is_asked(left, is_asked):
-        return _by_its_rate(rate, right, scope)
+        return _by_its_rate(rate, statement, scope)
     said = _said(left)
     base = _SQUARED.sub("", said)
     name = _new_name(base, scope, is_asked)
@@ -154,7 +196,7 @@ def _definition(statement: Statement, scope: Scope, is_asked: Callable[[Label], 
         return None
     is_root = base != said
     value = sp.sqrt(value) if is_root else value
-    return _Definition(name, value, _moves_in(value, scope), is_root)
+    return _Definition(name, statement, value, _moves_in(value, scope), is_root)
 
 
 def _said(side: Side) -> str:
@@ -183,8 +225,9 @@ def _is_asked(side: Side, is_asked: Callable[[Label], bool]) -> bool:
     return label is not None and is_asked(label)
 
 
-def _by_its_rate(rate: Symbol, right: Side, scope: Scope) -> _Definition | None:
+def _by_its_rate(rate: Symbol, statement: Statement, scope: Scope) -> _Definition | None:
     """Return the name that ``x' = v`` or ``x' = p/m`` defines; None where it is not one name times something."""
+    right = statement.sides[1]
     words = dict.fromkeys(re.findall(r"(?<!\\)\b[A-Za-z]\w{0,9}", right.text))
     for word in [word for word in words if _new_name(word, scope, lambda _: False)][:_MOST]:
         symbol = sp.Symbol(word, real=True)
@@ -197,12 +240,12 @@ def _by_its_rate(rate: Symbol, right: Side, scope: Scope) -> _Definition | None:
             return (
                 None
                 if _moves_in(factor, scope)
-                else _Definition(word, rate / factor, moves=True, by_rate=True)
+                else _Definition(word, statement, rate / factor, moves=True, by_rate=True)
             )
     return None
 
 
-def _with(statement: Statement, scope: Scope, put: dict[Symbol, Expr | None]) -> str | None:
+def _with(statement: Statement, scope: Scope, put: Mapping[Symbol, Expr | None]) -> str | None:
     """Return a statement with values in place of names; None where a side that holds one can't be read."""
     sides: list[str] = []
     for side in statement.sides:
@@ -229,10 +272,10 @@ def _read(side: Side, scope: Scope) -> Expr:
         return sp.S.Zero
 
 
-def _plain(side: Side, scope: Scope, put: dict[Symbol, Expr | None]) -> str | None:
+def _plain(side: Side, scope: Scope, put: Mapping[Symbol, Expr | None]) -> str | None:
     try:
         read = parse_expression(_WHERE.sub(r"\1", side.text), scope)
     except LanguageError:
         return None
-    values = {symbol: put[symbol] for symbol in read.free_symbols if symbol in put}
-    return None if None in values.values() else str(read.xreplace(values))
+    filled = _filled(read, put)
+    return None if filled is None else str(filled)
