@@ -14,6 +14,7 @@ from sympy import Expr, Rational
 
 from canon.expression.builder import Builder
 from canon.expression.physics_package import written_out
+from canon.expression.prose import without_prose
 from canon.expression.remarks import without_remarks
 from canon.expression.symbols.user_input import given_kind
 from canon.expression.text import syntax
@@ -123,12 +124,19 @@ def syntax_of(text: str, scope: Scope) -> syntax.Node:
 
 
 def _syntax(text: str, scope: Scope) -> syntax.Node:
-    text = written_out(without_remarks(unmarked(text), scope))
+    text = _without_what_is_around(text, scope)
     if is_latex(text):
         from canon.expression.latex.grammar import parse_latex  # only here: it loads a parser generator
 
         return _in_place(text, without_units(text, scope), lambda blanked: parse_latex(blanked, scope))
     return _in_place(text, without_units(text, scope), lambda blanked: parse_juxtaposed(blanked, scope))
+
+
+def _without_what_is_around(text: str, scope: Scope) -> str:
+    """Return a text without markup, prose and remarks around its formula, every column where it was."""
+    plain = unmarked(text)
+    bare = without_prose(plain, scope)
+    return written_out(without_remarks(plain if bare == plain else unmarked(bare), scope))
 
 
 _kept_syntax = functools.lru_cache(maxsize=256)(_syntax)
@@ -150,7 +158,7 @@ def statements_of(text: str, scope: Scope) -> tuple[Statement, ...]:
     """
     given_kind(text, str, "an expression of the language")
     given_kind(scope, Scope, "the scope", "write Scope({'x': x}) with the declared names")
-    text = written_out(without_remarks(unmarked(text), scope))
+    text = _without_what_is_around(text, scope)
     if is_latex(text):
         from canon.expression.latex.latex_statement import latex_statements  # only here, as above
 

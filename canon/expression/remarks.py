@@ -10,10 +10,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from canon.expression.prose import CHANGING, SMALL, is_known
 from canon.expression.text.declared_names import Words, function_name
-from canon.expression.text.tokens import GREEK, MAX_CHARACTERS, LanguageError, tokens
+from canon.expression.text.tokens import GREEK, MAX_CHARACTERS, LanguageError
 from canon.expression.text.units import is_a_unit
-from canon.expression.text.vocabulary import CONSTANTS, OTHER_NAMES
 
 if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
@@ -40,34 +40,7 @@ _UPRIGHT = re.compile(
     r"\{\s{0,9}\(?([A-Za-z][A-Za-z'’ -]{2,60})\)?\s{0,9}\}([\s.$]{0,9}|\s*\\[\])]\s*)$"
 )
 _UNIT = re.compile(r"(?<=[\w)\]}'′″])[ \t]{1,9}\[([^\[\]]{1,40})\][\s.]{0,9}$")
-_SMALL = frozenset(
-    (
-        "a",
-        "an",
-        "and",
-        "as",
-        "at",
-        "by",
-        "for",
-        "from",
-        "in",
-        "is",
-        "it",
-        "its",
-        "of",
-        "on",
-        "so",
-        "the",
-        "to",
-    )
-)
-"""Words of few letters that are in no formula."""
-_CHANGING = frozenset((
-    "about", "almost", "approximately", "except", "half", "if", "minus", "never", "not", "only", "or", "plus",
-    "roughly", "squared", "times", "twice", "unless", "when", "wrong",
-))  # fmt: skip
-"""Words that may change what the formula says."""
-_LETTERS_OF_A_WORD = 4
+_LETTERS_OF_A_WORD = 3
 _NAMED = frozenset(("Newton", "Lagrange", "Hamilton", "Hooke", "Kepler", "EOM", "ODE"))
 """Words that are a remark by themselves."""
 
@@ -103,7 +76,7 @@ def without_remarks(text: str, scope: Scope) -> str:
         return text[: remark.start()] + remark[2]
     if (unit := _UNIT.search(text)) and "=" in text and is_a_unit(unit[1]):
         letters = re.findall("[A-Za-zΩ]+", unit[1])
-        if all(_is_known(letter, words) for letter in letters):
+        if all(is_known(letter, words) for letter in letters):
             reason = f"is [{unit[1]}] a unit, or a factor?"
             raise LanguageError(text, unit.start(1), reason, "leave the unit out, or write * before a factor")
         return text[: unit.start()]
@@ -171,24 +144,10 @@ def _is_behind(text: str, start: int) -> bool:
 
 def _says_nothing(remark: str, words: Words) -> bool:
     """Tell whether words in brackets are a remark: several, none of which can be read, or a name known for it."""
-    found = re.findall("[A-Za-z]+", remark)
-    if _CHANGING.intersection(word.lower() for word in found):
+    found = re.findall("[A-Za-z]+", re.sub("['’]s", "", remark))
+    if CHANGING.intersection(word.lower() for word in found):
         return False
-    long = [word for word in found if word.lower() not in _SMALL]
-    if any(
-        (len(word) < _LETTERS_OF_A_WORD and word not in _NAMED) or _is_known(word, words) for word in long
-    ):
+    long = [word for word in found if word.lower() not in SMALL]
+    if any((len(word) < _LETTERS_OF_A_WORD and word not in _NAMED) or is_known(word, words) for word in long):
         return False
     return (len(found) > 1 and bool(long)) or remark.strip() in _NAMED
-
-
-def _is_known(word: str, words: Words) -> bool:
-    """Tell whether a word, or the letters that it is made of, can stand in a formula."""
-    if word in CONSTANTS or word in OTHER_NAMES or word in GREEK.values() or function_name(word, words.scope):
-        return True
-    (token, *_) = tokens(word)
-    try:
-        read = words.read(token, bracket=False)
-    except LanguageError:
-        return True
-    return len(read) > 1 or words.declared(word) != []

@@ -233,7 +233,8 @@ class _Plain:
         """Return the text of one expression without its left sides; what else it says becomes links."""
         if not isinstance(text, str):
             return text
-        statements = self.sides.statements(place, text)
+        given, statements = self.sides.given(place), self.sides.statements(place, text)
+        statements = [s for s in statements if not given.says_a_momentum(s)] or statements
         if len(statements) > 1:
             named = [s for s in statements if self.is_asked(s.sides[0], asked) and s.sides[1:]]
             other = next((s for s in statements if s not in named), statements[-1]).sides[0]
@@ -248,7 +249,7 @@ class _Plain:
         first, *others = next(iter(statements)).sides
         sides = [first, *(side for side in others if not self.is_constant(place, side))]
         if len(sides) == 1:
-            return first.text if others else text
+            return first.text
         self.refuse_lagrangian(place, text, sides[0])
         if not self.is_asked(sides[0], asked) and self.is_asked(sides[-1], asked):
             sides = [sides[-1], *sides[:-1]]  # p²/2m = H

@@ -252,7 +252,7 @@ def spelled_plainly(side: str) -> str:
     for pattern, spelling in _SPELLINGS:
         plain = pattern.sub(spelling, plain)
     plain = re.sub(r"\s+", "", plain)
-    return plain if re.fullmatch(r"[\w+\-*/^(){}\[\],'∂|]*", plain) else ""
+    return plain if re.fullmatch(r"[\w+\-*/^(){}\[\],'∂Σ|]*", plain) else ""
 
 
 _LONGEST = 100
@@ -276,6 +276,7 @@ _SPELLINGS = tuple(
         (r"\\(?:mathrm|mathcal|mathscr|mathbf)\s*(\w)", r"\1"),
         (r"\\(?:hat|vec|bar|tilde|widehat|widetilde|overline)\s*(?:\{\s*(\w+)\s*\}|(\w))", r"\1\2"),
         (r"\\partial(?![A-Za-z])", "∂"),
+        (r"\\sum(?![A-Za-z])\s*(?:_\s*(?:\{[^{}]{1,9}\}|\w))?\s*(?:\^\s*(?:\{[^{}]{1,9}\}|\w))?", "Σ"),
         (rf"\\(?:var)?({_GREEK})(?![A-Za-z])", r" \1 "),
         (r"_\s*\{\s*(\w+)\s*\}", r"_\1"),
         (r"_\s*(\w)", r"_\1"),

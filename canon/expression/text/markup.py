@@ -52,7 +52,7 @@ _SAID_BEFORE = re.compile(
     re.IGNORECASE,
 )
 _SAID_BEHIND = re.compile(
-    r"[\s.,;]{0,9}(?:✓|✔|∎|□|■|\\(?:checkmark|qed|blacksquare)\b|\bQED\b|q\.\s?e\.\s?d\.?)[\s.]*$"
+    r"[\s.,;]{0,9}(?:✓|✔|∎|□|■|\\(?:checkmark|qed|blacksquare)\b|\\(?:text|mathrm)\{\s*(?:q\.e\.d\.|QED)\s*\}|\bQED\b|q\.\s?e\.\s?d\.?)[\s.]*$"
 )
 """Words and signs around a formula that say nothing of it."""
 _APART_ACCENT = re.compile(r"(?<=[^\W\d]) ([\u0307\u0308])")

@@ -49,7 +49,7 @@ class Statement:
 
 _OPEN, _CLOSE = "([{⟨", ")]}⟩"
 _EQUALS = re.compile(r"(?<![<>!:=≠])(?:==|:=|=|≡|≔)(?![=>])")
-_ENDS = re.compile(r"[;\n]|⇒|⟹|∴|=>|(?<=\s)(?:and|where|with)(?=\s)")
+_ENDS = re.compile(r"[;\n]|⇒|⟹|∴|=>|(?<=\s)(?:and|where|with|mit|wobei|avec|où|donde)(?=\s)")
 MAX_SIDES = 100
 """Most sides in one field."""
 NAMED = r"(?:(?:where|with)\s)?\s*\\?[^\W\d]\w{0,11}(?:_\{\w{1,9}\})?\s*(?:\^2|\^\{2\}|\*\*2|²)?\s*"

@@ -6,6 +6,7 @@ is true of every system, and no answer.
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -47,6 +48,7 @@ def typed_equations(place: str, value: Any, known: Sides) -> list[Any]:
         text = texts[0]
         texts = vector_equations(text) or field_texts.equations_listed(text) or _products(place, text, known)
     found: list[Any] = []
+    refused: list[_Refused] = []
     for i, text in enumerate(texts):
         where = f"{place}[{i}]"
         statements = known.statements(where, text) if isinstance(text, str) else ()
@@ -54,8 +56,33 @@ def typed_equations(place: str, value: Any, known: Sides) -> list[Any]:
             found.append(text)
             continue
         for statement in statements:
-            found += _chain(where, text, statement, known)
+            if known.given(where).restates(statement) and len(statements) > 1:
+                continue
+            said = _chain(where, statement, known)
+            if isinstance(said, _Refused):
+                refused.append(replace(said, text=text))
+            else:
+                found += said
+    if refused and not found:
+        first = refused[0]
+        raise known.told(first.place, first.text, first.side, first.reason, first.remedy)
+    known.passed.extend(f"{each.shown} in {each.place} is passed over: {each.reason}" for each in refused)
     return found
+
+
+@dataclass(frozen=True)
+class _Refused:
+    """A statement that is no equation of motion, and why."""
+
+    place: str
+    side: Side
+    reason: str
+    remedy: str
+    text: str = ""
+
+    @property
+    def shown(self) -> str:
+        return self.side.text.strip().strip("$").strip()[:60]
 
 
 def _is_plain(statements: Sequence[Statement], known: Sides) -> bool:
@@ -80,23 +107,22 @@ def _unnumbered(place: str, texts: list[Any], known: Sides) -> list[Any]:
         raise known.fault(f"{place}[{texts.index(error.text)}]", error) from None
 
 
-def _chain(place: str, text: str, statement: Statement, known: Sides) -> list[str]:
-    """Return the equations that a chain says, definitions in it passed over."""
+def _chain(place: str, statement: Statement, known: Sides) -> list[str] | _Refused:
+    """Return the equations that a chain says, definitions in it passed over; what is wrong where it says none."""
     sides = known.without_own_names(place, statement.sides)
     rest = [side for side in sides if not known.is_origin(place, side, "claim")]
     if len(rest) == len(sides):
         links = [field_texts.equation_between(a, b) for a, b in pairwise(sides)]
         return links or [sides[0].text]
     made = _worked_out(place, sides, rest, known)
-    said = [side for side in rest if side.said.strip("$0. ")]
+    said = [side for side in rest if (side.said or side.text).strip("$0. ")]
     if len(rest) == 1 and said and sides[0] not in rest and "-" in sides[0].said:
         # d/dt(∂L/∂q̇) − ∂L/∂q is what stands there, and zero; or it equals the forces
         return made or [said[0].text]
     equations = [*made, *(field_texts.equation_between(a, b) for a, b in pairwise(rest))]
     if not said or not equations:
         unknown = next((side for side in sides if known.is_unknown(place, side)), None)
-        reason, remedy = _no_equation(said, unknown)
-        raise known.told(place, text, unknown or sides[0], reason, remedy)
+        return _Refused(place, unknown or sides[0], *_no_equation(said, unknown))
     return equations
 
 

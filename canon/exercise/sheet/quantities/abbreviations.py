@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 __all__ = ["Abbreviated", "without_abbreviations"]
 
 _SQUARED = re.compile(r"(?:\^2|\*\*2|²|\^\{2\})$")
-_WHERE = re.compile(r"^(\s*)(?:where|with|and)\b", re.IGNORECASE)
+_WHERE = re.compile(r"^(\s*)(?:where|with|and|mit|wobei|avec|où|donde)\b", re.IGNORECASE)
 _MOST = 8
 """Most abbreviations in one answer."""
 _LONGEST = 2_000

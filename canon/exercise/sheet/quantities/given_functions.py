@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import sympy as sp
 
 from canon.expression.parse import LanguageError, parse_expression
-from canon.expression.symbols.symbol import time_derivative
+from canon.expression.symbols.symbol import time_derivative, velocity
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
 
     from canon.expression.text.scope import Scope
-    from canon.expression.text.statement import Side
+    from canon.expression.text.statement import Side, Statement
 
 __all__ = ["GivenFunctions", "key_at"]
 
@@ -134,6 +134,30 @@ class GivenFunctions:
             return None
         found = said.xreplace(dict(put.values()))
         return found if found != said and isinstance(found, sp.Expr) else None
+
+    def restates(self, statement: Statement) -> bool:
+        """Tell whether a statement says again what the claim gives, ``L = T - V = …`` before an equation of motion."""
+        first, *others = statement.sides
+        if not others or not self._gives(first.said):
+            return False
+        try:
+            given, said = (parse_expression(f, self.scope) for f in (self.keys[first.said], others[-1].text))
+        except LanguageError:
+            return False
+        return sp.expand(given - said) == 0
+
+    def says_a_momentum(self, statement: Statement) -> bool:
+        """Tell whether a statement is true of a momentum, ``p = m x'`` beside a Hamiltonian that is asked for."""
+        q, p = self._symbols("q"), self._symbols("p")
+        if len(statement.sides) != 2 or not self._gives("L") or not q or not p or len(q) != len(p):
+            return False
+        try:
+            L = parse_expression(self.keys["L"], self.scope)
+            left, right = (parse_expression(side.text, self.scope) for side in statement.sides)
+        except LanguageError:
+            return False
+        momenta = {p_i: L.diff(velocity(q_i)) for p_i, q_i in zip(p, q, strict=True)}
+        return left in momenta and sp.expand(momenta[cast("Symbol", left)] - right) == 0
 
     def _without_slopes(self, text: str, letters: Mapping[str, Expr]) -> tuple[str, dict[str, Expr]]:
         """Return a text with names in place of derivatives ``∂L/∂x'`` of the given functions, and what these are."""
