@@ -131,3 +131,93 @@ def test_momenta_said_beside_a_hamiltonian(typed: str) -> None:
 def test_wrong_momenta_beside_a_hamiltonian() -> None:
     typed = "H = p_r²/(2m) + p_φ²/(2mr²) - k/r, where p_r = 2 m r'"
     assert judged(CENTRAL, H=typed).status == "invalid"
+
+
+ANGULAR = {
+    "kind": "poisson-bracket",
+    "q": ["x", "y", "z"],
+    "p": ["p_x", "p_y", "p_z"],
+}
+
+
+@pytest.mark.parametrize("name", ["{L_x, L_y} = ", "L_z = ", "[Lx, Ly] = ", "\\{L_x,L_y\\} = ", "= "])
+def test_a_bracket_by_names_of_ones_own(name: str) -> None:
+    pair = {"f": "y*p_z - z*p_y", "g": "z*p_x - x*p_z"}
+    right = judged(ANGULAR, pairs=[{**pair, "value": f"{name}x p_y - y p_x"}])
+    assert right.status == "holds"
+    assert name == "= " or any("is taken for" in told for told in right.warnings)
+    assert judged(ANGULAR, pairs=[{**pair, "value": f"{name}y p_x - x p_y"}]).status == "fails"
+
+
+def test_a_bracket_of_other_functions_is_refused() -> None:
+    pair = {"f": "y*p_z - z*p_y", "g": "z*p_x - x*p_z"}
+    assert judged(ANGULAR, pairs=[{**pair, "value": "{x, p_x} = x p_y - y p_x"}]).status == "invalid"
+
+
+@pytest.mark.parametrize("typed", ["{}x^2 + C", "F = {}x² + const", "{}x^2 + \\text{{const.}}"])
+def test_a_gauge_term_up_to_a_constant(typed: str) -> None:
+    question = {
+        **{key: SPRING[key] for key in ("q", "parameters")},
+        "kind": "lagrangian-equivalence",
+        "L1": SPRING["L"],
+        "L2": "m*x_dot**2/2 - k*x**2/2 + x*x_dot",
+        "relation": "gauge",
+    }
+    assert judged(question, F=typed.format("1/2 ")).status == "holds"
+    assert judged(question, F=typed.format("1/3 ")).status == "fails"
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        "E = m x'^2/2 {} k x^2/2",
+        "m x'^2/2 {} k x^2/2 = const",
+        "m x'²/2 {} 0,5 k x² = E",
+        "½ m v_x² {} 0{{,}}5 k x^2",
+    ],
+)
+def test_a_constant_of_the_motion_by_any_name(typed: str) -> None:
+    question = {**SPRING, "kind": "conserved-or-not"}
+    assert judged(question, conserved=[typed.format("+")]).status == "holds"
+    assert judged(question, conserved=[typed.format("-")]).status == "fails"
+
+
+@pytest.mark.parametrize(
+    "typed", ["10 m/s.", "v = 10 m/s.", r"10~\mathrm{m/s}", r"10\,\mathrm{ms}^{-1}", "36 km/h."]
+)
+def test_units_at_the_end_of_a_sentence(typed: str) -> None:
+    question = {"kind": "number", "unit": "m/s", "value": 10}
+    assert judged(question, claim=typed).status == "holds"
+    assert judged(question, claim=typed.replace("10", "11").replace("36", "37")).status == "fails"
+
+
+@pytest.mark.parametrize(
+    ("typed", "right"),
+    [
+        ("sech(x)", "1/cosh(x)"),
+        (r"\operatorname{sech} x", "1/cosh(x)"),
+        ("csch(x)", "1/sinh(x)"),
+        ("coth(x)", "1/tanh(x)"),
+        (r"\coth x", "1/tanh(x)"),
+        ("sen(x)", "sin(x)"),
+        ("arctg(x)", "atan(x)"),
+        ("0,25*x", "x/4"),
+        ("9{,}81 x", "981*x/100"),
+    ],
+)
+def test_functions_and_decimals_of_other_countries(typed: str, right: str) -> None:
+    question = {"kind": "equality-only", "parameters": {"x": "positive"}}
+    assert judged(question, lhs=right, rhs=typed).status == "holds"
+    assert judged(question, lhs=f"2*{right}", rhs=typed).status == "fails"
+
+
+@pytest.mark.parametrize("typed", ["1,000*x", "x + 1, 5", "sin(0,5)"])
+def test_commas_that_are_no_decimals(typed: str) -> None:
+    question = {"kind": "equality-only", "parameters": {"x": "positive"}}
+    assert judged(question, lhs="x", rhs=typed).status == "invalid"
+
+
+@pytest.mark.parametrize("typed", ["m*diff(x(t), t$2) {} k*x(t) = 0", "m*diff(x(t),[t$2]) {} k*x(t) = 0"])
+def test_second_derivatives_of_maple(typed: str) -> None:
+    assert judged(SPRING, claim=[typed.format("+")]).status == "holds"
+    assert judged(SPRING, claim=[typed.format("-")]).status == "fails"

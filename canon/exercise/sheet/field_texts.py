@@ -255,6 +255,25 @@ def without_remainder(text: str) -> tuple[str, str]:
     return text[: found.start()] + blank + text[found.end() :], found.group()[1:].strip()
 
 
+_PLUS_CONSTANT = re.compile(
+    r"\+\s*(?:\\(?:text|mathrm)\s?\{\s*)?(?P<name>C|[Cc]onst(?:ant)?)\b\.?\s*\}?(?=[\s.,$]*$)"
+)
+
+
+def without_constant(text: str) -> tuple[str, str]:
+    r"""Return a function with ``+ C`` or ``+ const`` blanked, and that name; an empty one where there is none.
+
+    Examples
+    --------
+    >>> without_constant("x^2/2 + C"), without_constant(r"q P + \text{const.}")[1], without_constant("x + y")
+    (('x^2/2    ', 'C'), 'const', ('x + y', ''))
+    """
+    found = _PLUS_CONSTANT.search(text)
+    if found is None or not text[: found.start()].strip(" $"):
+        return text, ""
+    return text[: found.start()] + " " * (found.end() - found.start()) + text[found.end() :], found["name"]
+
+
 def texts_in(value: Any, key: str = "") -> Iterator[tuple[str, str]]:
     """Yield every text under some keys, each with the first of the keys that lead to it."""
     if isinstance(value, str):

@@ -28,6 +28,7 @@ from canon.exercise.sheet.left_sides import (
     is_asked,
     is_of_another,
     label_of,
+    names_its_entries,
 )
 from canon.exercise.sheet.quantities.abbreviations import without_abbreviations
 from canon.exercise.sheet.typed_values import signed_tables, values_under
@@ -47,6 +48,8 @@ __all__ = ["Link", "TypedAnswers", "typed_answers"]
 
 _EQUATIONS = ("claim", "constraints", "restrict", "equations", "implicit", "leaves", "integrals", "boundary")
 _UNTOUCHED = ("domain", "class")
+_UP_TO_A_CONSTANT = ("F", "S", "W")
+"""Generating functions, gauges and complete integrals."""
 _EXPANSIONS = {"small", "degree"}
 """Keys of kinds whose answers are right to an order."""
 
@@ -154,6 +157,11 @@ class _Plain:
         """Return an answer without remainders, where those are understood, and with what it abbreviates put in."""
         if _EXPANSIONS & self.kind.shapes.keys() and not self.scope.declares("O"):
             value = self.without_remainders(key, value)
+        if key in _UP_TO_A_CONSTANT and isinstance(value, str):
+            function, name = field_texts.without_constant(value)
+            if name and not self.scope.declares(name):
+                self.found.passed.append(f"+ {name} in {key} is passed over: {key} is meant up to a constant")
+                value = function
         return value if key in self.kind.several else self.written_out(key, value)
 
     def written_out(self, key: str, value: Any) -> Any:
@@ -254,12 +262,18 @@ class _Plain:
         if not self.is_asked(sides[0], asked) and self.is_asked(sides[-1], asked):
             sides = [sides[-1], *sides[:-1]]  # p²/2m = H
         if self.is_asked(sides[0], asked):
-            if place == "H" and sides[0].said.startswith("E"):
-                self.found.passed.append("E in H is read as H, which is asked for")
+            self.tell_name(place, sides[0], asked)
             sides = sides[1:]
         else:
             self.refuse_other_names(place, text, sides[0], asked)
         return self.last_of(place, text, sides, asked)
+
+    def tell_name(self, place: str, side: Side, asked: Quantity) -> None:
+        """Note what a name is taken for, where it is one of the writer's own."""
+        if place == "H" and side.said.startswith("E"):
+            self.found.passed.append("E in H is read as H, which is asked for")
+        if asked.bracket and not names_its_entries(label_of(side.said), asked, self.scope):
+            self.found.passed.append(f"{side.said} in {place} is taken for {asked.shown}, which is asked for")
 
     def last_of(self, place: str, text: str, sides: list[Side], asked: Quantity) -> str:
         """Return the last side of a chain; those before it are links, or definitions that are passed over."""
@@ -332,6 +346,8 @@ class _Plain:
         if asked.shown == "I" and label is not None and label.name and not label.rates:
             given = self.scope.declares(label.name) or isinstance(self.of.keys.get(label.name), str)
             asked = asked if given else Quantity("I", ((label.name, 0),))
+        if asked.bracket and label is not None and label.name and not (label.rates or label.arguments):
+            return key_of(label.name) not in {key_of(name) for name in self.scope.spelled}  # L_z = …
         rate = label is not None and label.rates > 0 and not has_primes(side.text)
         if rate and asked.shown in OTHER_SPELLINGS:
             return False  # dH/dt and Ḣ are no names of what H' is a name of
@@ -347,7 +363,8 @@ class _Plain:
 
     def is_constant(self, place: str, side: Side) -> bool:
         """Tell whether a side only says that the others are constant."""
-        return place == "I" and not self.scope.declares("const") and field_texts.says_constant(side.text)
+        of_motion = place == "I" or place.startswith("conserved")
+        return of_motion and not self.scope.declares("const") and field_texts.says_constant(side.text)
 
     def bracket(self, place: str, pair: Any) -> Any:
         """Return a bracket whose value is in plain form."""
@@ -369,7 +386,8 @@ class _Plain:
             texts = self.in_order(place, texts, names)
         found: list[Any] = []
         for i, text in enumerate(texts):
-            asked = names[i] if i < len(names) else Quantity(f"component {i + 1}")
+            free = "I" if place in ("conserved", "not_conserved") else f"component {i + 1}"
+            asked = names[i] if i < len(names) else Quantity(free)
             found.append(self.expression(f"{place}[{i}]", text, asked) if isinstance(text, str) else text)
         return found if isinstance(value, list) or len(found) > 1 else found[0]
 

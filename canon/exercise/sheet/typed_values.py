@@ -39,6 +39,8 @@ _NEARLY = re.compile(r"\\(?:approx|simeq|in)(?![A-Za-z])|[≈≃≅≐∈]|~=|(?
 _TEN = re.compile(r"(?<=[0-9])\s?([xX])\s?(?=10(?:\^|\*\*|[⁻⁺⁰¹²³⁴-⁹]))")
 _DOTS = re.compile(r"(?<=[0-9])(?:\.\.\.+|…|\\(?:dots|ldots|cdots)(?![A-Za-z]))")
 _COMMA = re.compile(r"(?<![0-9A-Za-z_.,])[0-9]+,[0-9]+(?![0-9,])")
+_STOP = re.compile(r"(?<=[A-Za-zΩ°²³)}])\s?\.\s*$")
+"""The full stop of a sentence, behind a unit."""
 _SIGNS = re.compile(r"\\pm(?![A-Za-z])|\\mp(?![A-Za-z])|±|∓|\+/[-−]")
 _ABOUT = re.compile(r"\b(?:about|approximately|approx\.?|roughly|ca\.|circa)(?=\s*[-0-9.])")
 _ARC = re.compile(r"(?i)arc|(?<![a-z])a(?:cos|sin|tan)|(?:cos|sin|tan)(?:⁻¹|\^\{?\(?-1)")
@@ -115,12 +117,12 @@ def typed_values(text: str, scope: Scope, *, measured: bool, name: str = "") -> 
     >>> [value.text.strip() for value in typed_values("x = 1 ± sqrt(2) or x = 7/2 = 3.5", Scope(), measured=False)[0]]
     ['1 + sqrt(2)', '1 - sqrt(2)', '7/2', '3.5']
     """
-    text = _plain_signs(unmarked(text), scope)
     found = _COMMA.search(text)
     if found and text.count("{", 0, found.start()) + text.count("(", 0, found.start()) == 0:
         whole, _, part = found.group().partition(",")
         reason = f"is {found.group()} the decimal {whole}.{part}, or two values?"
         raise LanguageError(text, found.start() + 1, reason, f"write {whole}.{part}, or {whole}; {part}")
+    text = _STOP.sub("", _plain_signs(unmarked(text), scope))
     if text.count(",") + text.count(";") > MOST_VALUES:
         raise LanguageError(text, 1, f"more than {MOST_VALUES} values", "split the claim")
     values: list[Value] = []

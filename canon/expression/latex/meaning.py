@@ -272,10 +272,7 @@ class Meaning:
             )
         if inverse:
             return raised(Call(_INVERSE[name], arguments, column), after)
-        node: Node = Call("tanh" if name == "coth" else name, arguments, column)
-        if name == "coth":
-            node = Product(((False, Number(1, 1, column)), (True, node)), column)
-        return raised(node, exponent or after)
+        return raised(Call(name, arguments, column), exponent or after)
 
     def _declared(self, items: tuple[Piece, ...], at: int, head: Head, function: Applied) -> tuple[Node, int]:
         """Return a declared function with its arguments, and where they end."""

@@ -21,7 +21,8 @@ __all__ = [
 ]  # fmt: skip
 
 FUNCTIONS = {
-    **{name: name for name in ("sin", "cos", "tan", "cot", "sec", "csc", "sinh", "cosh", "tanh", "coth", "exp")},
+    **{name: name for name in ("sin", "cos", "tan", "cot", "sec", "csc", "sinh", "cosh", "tanh", "exp")},
+    **{name: name for name in ("sech", "csch", "coth")}, "sen": "sin",
     "ln": "log", "log": "log", "max": "Max", "min": "Min",
     "arcsin": "asin", "arccos": "acos", "arctan": "atan", "arccot": "acot",
     "arsinh": "asinh", "arcosh": "acosh", "artanh": "atanh",

@@ -67,6 +67,13 @@ _ASSIGNED = re.compile(r"^(\s*[A-Za-z]\w{0,9}\s*):(?![:=])(?=[^;]*;\s*$)")
 _PRIMED = re.compile(r"Derivative\[([1-4])\]\[((?:\\\[[A-Z][A-Za-z]{1,20}\]|\w){1,40})\](?=\[)")
 _TWICE = re.compile(r"(?<!\w)d([2-4])([^\W\d_]\w{0,15})/dt\1(?!\w)")
 """``d2x/dt2``, without a sign of the power."""
+_DECIMAL_COMMA = re.compile(
+    r"(?<![\w.,])(?:(0),([0-9]{1,9})|([1-9][0-9]{0,3}),([0-9]{1,2}|[0-9]{4,9}))(?![\w.,])"
+)
+"""``9,81``; ``1,000`` may be a thousand, and what is in brackets a list."""
+_BRACED_COMMA = re.compile(r"([0-9]+)\{,\}(?=[0-9])")
+_MAPLE = re.compile(r"(?:\[\s?)?(?<=[\s,\[])([a-z])\s?\$\s?([1-4])(\s?\])?(?=\s?\))")
+"""Maple's ``t$2`` and ``[t$2]``."""
 _FENCE = re.compile(r"^\s*```[a-z]{0,12}\n(.*?)\n?```\s*$", re.DOTALL)
 
 
@@ -93,9 +100,11 @@ def unmarked(text: str) -> str:
     if "\n" not in text.strip():
         text = text.replace("│", "|").replace("ℯ", "%e")
     text = _EMPHASISED.sub(r"\1\2\3", text)
-    if "\\" not in text:
-        text = _ELEMENTWISE.sub(r"\1", text).replace("≡", "=")
+    text = text.replace("~", " ") if "\\" in text else _ELEMENTWISE.sub(r"\1", text).replace("≡", "=")
     text = _TWICE.sub(r"d^\1\2/dt^\1", text)
+    text = _with_points(text) if "," in text else text
+    if "$" in text and "\\" not in text:
+        text = _MAPLE.sub(lambda found: f"{found[1]},{found[2]}".rjust(len(found.group())), text)
     if "Derivative[" in text:
         text = _PRIMED.sub(_with_primes, text)
     if drawn := _DRAWN.search(text) or _rows_of_a_drawing(text):
@@ -166,6 +175,16 @@ def _have_a_bracket(above: str, below: str) -> bool:
     columns = list(zip(above, below, strict=False))
     left = next((i for i, pair in enumerate(columns) if pair in (("/", "\\"), ("/", "|"))), None)
     return left is not None and any(pair in (("\\", "/"), ("\\", "|")) for pair in columns[left + 1 :])
+
+
+def _with_points(text: str) -> str:
+    """Return a text with points in place of decimal commas outside brackets, as long as it was."""
+    text = _BRACED_COMMA.sub(r"  \1.", text) if "{,}" in text else text
+    for found in reversed(list(_DECIMAL_COMMA.finditer(text))):
+        before = text[: found.start()]
+        if sum(map(before.count, "([{")) == sum(map(before.count, ")]}")):
+            text = f"{before}{found.group().replace(',', '.')}{text[found.end() :]}"
+    return text
 
 
 def _blank(found: re.Match[str]) -> str:

@@ -32,6 +32,19 @@ def _acot(x: Expr) -> Expr:
     return sp.acot(x, evaluate=False) if extracted else sp.acot(x)
 
 
+def _sech(x: Expr) -> Expr:
+    """Return sech x as 1/cosh x, which every room knows."""
+    return 1 / sp.cosh(x)
+
+
+def _csch(x: Expr) -> Expr:
+    return 1 / sp.sinh(x)
+
+
+def _coth(x: Expr) -> Expr:
+    return sp.cosh(x) / sp.sinh(x)
+
+
 def _elliptic_pi(*arguments: Expr, evaluate: bool = True) -> Expr:
     """Return Π(n, m) or Π(n, φ, m); SymPy's formulas for special n and m of the latter are wrong for φ > π/2."""
     return sp.elliptic_pi(*arguments, evaluate=evaluate and len(arguments) == 2)
@@ -47,6 +60,9 @@ FUNCTIONS: Mapping[str, tuple[Callable[..., Expr], int, int]] = MappingProxyType
             )
         },
         "acot": (_acot, 1, 1),
+        "sech": (_sech, 1, 1),
+        "csch": (_csch, 1, 1),
+        "coth": (_coth, 1, 1),
         "log": (sp.log, 1, 2),
         "atan2": (sp.atan2, 2, 2),
         "elliptic_e": (sp.elliptic_e, 1, 2),
@@ -67,7 +83,8 @@ CONSTANTS: Mapping[str, Expr] = MappingProxyType({"pi": sp.pi, "I": sp.I})
 RELATIONS = {"<": sp.Lt, "<=": sp.Le, ">": sp.Gt, ">=": sp.Ge, "!=": sp.Ne, "==": sp.Eq}
 OTHER_NAMES = {"ln": "log", "Log": "log", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "abs": "Abs",
                 "cotan": "cot", "max": "Max", "min": "Min", "e": "exp(1)", "E": "exp(1)", "i": "I", "j": "I",
-                "diff": "Derivative", "tg": "tan", "ctg": "cot",
+                "diff": "Derivative", "tg": "tan", "sen": "sin", "arcsen": "asin", "arctg": "atan", "cth": "coth",
+                "ctg": "cot",
                 "sh": "sinh", "ch": "cosh", "th": "tanh", "arccot": "acot",
                 "arcsinh": "asinh", "arccosh": "acosh", "arctanh": "atanh", "arsinh": "asinh", "arcosh": "acosh",
                 "artanh": "atanh", "arctan2": "atan2", "fabs": "Abs", "sgn": "sign", "cosec": "csc",

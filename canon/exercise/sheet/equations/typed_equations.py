@@ -47,26 +47,26 @@ def typed_equations(place: str, value: Any, known: Sides) -> list[Any]:
     if len(texts) == 1 and isinstance(texts[0], str):
         text = texts[0]
         texts = vector_equations(text) or field_texts.equations_listed(text) or _products(place, text, known)
-    found: list[Any] = []
-    refused: list[_Refused] = []
-    for i, text in enumerate(texts):
-        where = f"{place}[{i}]"
-        statements = known.statements(where, text) if isinstance(text, str) else ()
-        if not isinstance(text, str) or _is_plain(statements, known):
-            found.append(text)
-            continue
-        for statement in statements:
-            if known.given(where).restates(statement) and len(statements) > 1:
-                continue
-            said = _chain(where, statement, known)
-            if isinstance(said, _Refused):
-                refused.append(replace(said, text=text))
-            else:
-                found += said
-    if refused and not found:
+    said = [each for i, text in enumerate(texts) for each in _of_text(f"{place}[{i}]", text, known)]
+    refused = [each for each in said if isinstance(each, _Refused)]
+    if refused and len(refused) == len(said):
         first = refused[0]
         raise known.told(first.place, first.text, first.side, first.reason, first.remedy)
     known.passed.extend(f"{each.shown} in {each.place} is passed over: {each.reason}" for each in refused)
+    return [each for each in said if not isinstance(each, _Refused)]
+
+
+def _of_text(place: str, text: Any, known: Sides) -> list[Any]:
+    """Return the equations of one text, and what in it is none."""
+    statements = known.statements(place, text) if isinstance(text, str) else ()
+    if not isinstance(text, str) or _is_plain(statements, known):
+        return [text]
+    found: list[Any] = []
+    for statement in statements:
+        if len(statements) > 1 and known.given(place).restates(statement):
+            continue
+        said = _chain(place, statement, known)
+        found += [replace(said, text=text)] if isinstance(said, _Refused) else said
     return found
 
 

@@ -160,7 +160,7 @@ def measure_like(unit: str, asked: Measure) -> Measure | None:
     found = measure_of(unit)
     if found is None or found.powers == asked.powers:
         return found
-    beside = measure_of(re.sub(r"(?<![A-Za-z])ms(?=\s*[\^⁻*({])", "m s", unit))
+    beside = measure_of(re.sub(r"(?<![A-Za-z])ms(?=\s*\}?\s*[\^⁻*({])", "m s", unit))
     return beside if beside is not None and beside.powers == asked.powers else found
 
 
