@@ -104,7 +104,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--implicit-multiplication",
         action="store_true",
-        help="read factors side by side, as in 2 m g l, as a product",
+        help="a letter after a number is always a factor, never a unit: 2 m g l",
     )
 
 

@@ -34,6 +34,8 @@ def told(keys, leaves):
     ("keys", "right", "wrong"),
     [
         (FROM_THE_TOP, "th = acos(2/3)", "th = acos(1/3)"),
+        (SPHERE, "th = acos(2/3)", "th = acos(1/3)"),  # the other side and whole turns are meant too
+        (SPHERE, "th = 2*pi - acos(2/3)", "th = pi - acos(2/3)"),
         (FROM_THE_TOP, "th = asin(sqrt(5)/3)", "th = asin(2/3)"),
         (FROM_THE_TOP, "th = atan(sqrt(5)/2)", "th = atan(sqrt(5)/3)"),
         (FROM_THE_TOP, "th = 2*asin(1/sqrt(6))", "th = asin(1/sqrt(6))"),
@@ -60,7 +62,11 @@ def test_the_same_places_in_another_form(keys, right, wrong):
     [
         (FROM_THE_TOP, "th = acos(1/3)", "there the reaction does not vanish, as at th = acos(1/3)"),
         (FROM_THE_TOP, "(th - acos(2/3))*(th - 1) = 0", "there the reaction does not vanish, as at th = 1"),
-        (SPHERE, "th = acos(2/3)", "the reaction vanishes elsewhere too, as at th = 2*pi*n + acos(2/3)"),
+        (
+            SPHERE,
+            "(th - acos(2/3))**2 = 0",
+            "the reaction vanishes elsewhere too, as at th = 2*pi*n + acos(2/3)",
+        ),
         (SLOPE, "th = 5*pi/4 + acos(sqrt(2)/3)", "the reaction vanishes elsewhere too"),
     ],
 )

@@ -6,7 +6,7 @@ with their values, such as the energy of a start from rest: the motions meant ar
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
@@ -106,7 +106,10 @@ def leaving_condition(reading: Reading) -> Iterator[Question]:
             return
         if claimed.is_nonzero or proved_sign(claimed, motion.branch.domain) in ("+", "-"):
             reading.fault("leaves", "holds nowhere along the contact")
-        verdict = _same_zeros(force, claimed, motion.branch, reading.symbols("q"), deadline)
+        q = reading.symbols("q")
+        verdict = _same_zeros(force, claimed, motion.branch, q, deadline)
+        if verdict.fails and (place := _place_of_an_angle(leaves, force, q)) is not None:
+            verdict = _same_zeros(force, motion.along(place), motion.branch, q, deadline)
         yield Stated(verdict, lambda force=force: f"the reaction {shown_short(sp.factor_terms(force))} = 0")
 
 
@@ -148,6 +151,22 @@ def _motions(
 
 def _answer(parts: Sequence[Part]) -> tuple[str, ...]:
     return tuple(f"{part.name} = {shown_short(sp.factor_terms(part.right))}" for part in parts)
+
+
+def _place_of_an_angle(leaves: Expr, force: Expr, q: Sequence[Symbol]) -> Expr | None:
+    """Return cos θ − cos c for ``θ = c``, where the reaction is the same after whole turns and on the other side.
+
+    Who writes ``θ = arccos(2/3)`` means these places too; None where the reaction tells them apart.
+    """
+    for x in q:
+        factor = leaves.diff(x)
+        c = sp.expand(x - leaves / factor) if factor.is_number and factor != 0 else x
+        waves = [f for f in force.atoms(sp.sin, sp.cos) if f.has(x)]
+        inside = force.xreplace({f: sp.Dummy() for f in waves})
+        whole = not inside.has(x) and all(f.args[0].diff(x).is_integer for f in waves)
+        if not c.has(*q) and waves and whole and sp.expand(force - substitute(force, {x: -x})) == 0:
+            return cast("Expr", sp.cos(x) - sp.cos(c))
+    return None
 
 
 def _same_zeros(

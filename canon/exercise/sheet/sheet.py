@@ -235,6 +235,7 @@ def sheet_from(data: bytes, *, file: str = "", toml: bool = False) -> Sheet:
 _QUOTES = (
     "; a backslash means something to TOML between double quotes: write LaTeX between single quotes, '…'"
 )
+_TWICE = "; a backslash means something to JSON: write it twice, \\\\theta"
 
 _EATEN = re.compile(
     "\t(?=au|an|heta|ext|imes|frac|o\\b)|\x08(?=eta|ar|igl?|oldsymbol)|\x0c(?=rac)|\r(?=ho|ight|angle|m\\b)|\n(?=abla|eq?\\b|u\\b)"
@@ -364,10 +365,13 @@ def claim_from(keys: Any, number: int = 1, file: str = "") -> Claim:
     id_ = name if isinstance(name, str) and name else f"#{number}"
     said = keys.get("kind")
     kind = said if isinstance(said, str) else ""
-    found = [("id", "missing (a name for the claim)")] if id_ != name else []
+    unnamed = "missing" if name is None else f"{name!r} is no text"
+    found = [("id", f"{unnamed} (a name for the claim)")] if id_ != name else []
     found += faults(kind, keys)
     found += [
-        (key, f"a backslash and a letter became one sign here{_QUOTES}") for key in keys if _eaten(keys[key])
+        (key, f"a backslash and a letter became one sign here{_QUOTES if file.endswith('.toml') else _TWICE}")
+        for key in keys
+        if _eaten(keys[key])
     ]
     expect = keys.get("expect", "")
     if expect not in ("", "holds", "fails"):
