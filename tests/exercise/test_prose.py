@@ -221,3 +221,18 @@ def test_commas_that_are_no_decimals(typed: str) -> None:
 def test_second_derivatives_of_maple(typed: str) -> None:
     assert judged(SPRING, claim=[typed.format("+")]).status == "holds"
     assert judged(SPRING, claim=[typed.format("-")]).status == "fails"
+
+
+def test_a_wrong_answer_at_the_end_of_a_chain_is_told() -> None:
+    found = judged(
+        {
+            "kind": "hamilton-equations",
+            "q": ["x"],
+            "p": ["p"],
+            "H": "p**2/2 + k*x**4/4",
+            "parameters": {"k": "positive"},
+        },
+        q_dot=["p"],
+        p_dot=["p' = -∂H/∂x = -2 k x³"],
+    )
+    assert (found.status, found.feedback) == ("fails", "in dp/dt the term -2*k*x**3 should be half that")

@@ -16,7 +16,7 @@ from canon.exercise.diagnose.diagnosis import MOST_SENTENCES, Diagnosis, WrongAn
 from canon.exercise.diagnose.effort import JUDGEMENT_STEPS, Effort
 from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.equation_systems import AFFINE
-from canon.exercise.question.question import Same, SameEquations
+from canon.exercise.question.question import Chain, Same, SameEquations
 from canon.exercise.sheet.kind import named_function
 from canon.proof.rungs.ladder import REFUSALS
 
@@ -48,6 +48,8 @@ def diagnosis(finding: Finding, seconds: float = OUTER_SECONDS) -> Diagnosis | N
     BudgetSpent
         Where the seconds are over before the search came to its own end.
     """
+    if not isinstance(finding.question, Chain):  # whatever the answer was said to be equal to
+        finding = replace(finding, reading=replace(finding.reading, links=()))
     found = _told(finding, Effort(seconds))
     return _with_dimensions(found, finding) if finding.reading.has("dimensions") else found
 
