@@ -116,7 +116,8 @@ class Scope:
 
     def near(self, name: str, behind: str = "") -> str:
         """Return a remedy for an unknown name, before what stands behind it."""
-        if name in LEGENDRES and behind.lstrip().startswith(("(", "[", r"\left")):
+        called = behind.lstrip().startswith(("(", "[", r"\left"))
+        if name in LEGENDRES and called and (name not in ("F", "Pi") or "," in behind.partition(")")[0]):
             return f"if Legendre's integral is meant, write {LEGENDRES[name]} of the parameter m = k²"
         if name in OTHER_NAMES:
             return f"write {OTHER_NAMES[name]}"

@@ -108,6 +108,7 @@ WRITTEN_OUT = {
     ),
     **dict.fromkeys(("Matrix", "Vector", "ImmutableMatrix"), "write the components one by one, in a list"),
     **dict.fromkeys(("Limit", "limit"), "write its value"),
+    **dict.fromkeys(("const", "constant", "Const"), "write what is constant, or leave it out"),
 }
 """What is no function of the language, and what to write instead."""
 LEGENDRES = MappingProxyType(
