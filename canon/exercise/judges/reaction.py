@@ -163,9 +163,9 @@ def _place_of_an_angle(leaves: Expr, force: Expr, q: Sequence[Symbol]) -> Expr |
         c = sp.expand(x - leaves / factor) if factor.is_number and factor != 0 else x
         waves = [f for f in force.atoms(sp.sin, sp.cos) if f.has(x)]
         inside = force.xreplace({f: sp.Dummy() for f in waves})
-        whole = not inside.has(x) and all(f.args[0].diff(x).is_integer for f in waves)
+        whole = not inside.has(x) and all(cast("Expr", f.args[0]).diff(x).is_integer for f in waves)
         if not c.has(*q) and waves and whole and sp.expand(force - substitute(force, {x: -x})) == 0:
-            return cast("Expr", sp.cos(x) - sp.cos(c))
+            return sp.cos(x) - sp.cos(c)
     return None
 
 

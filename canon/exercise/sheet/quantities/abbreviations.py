@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 import sympy as sp
 
@@ -129,8 +129,8 @@ def _put_in(defined: Sequence[_Definition], scope: Scope) -> dict[Symbol, Expr |
 
 def _filled(read: Expr, put: Mapping[Symbol, Expr | None]) -> Expr | None:
     """Return an expression with values in place of names; None where one has no value."""
-    values = {symbol: put[symbol] for symbol in read.free_symbols if symbol in put}
-    return None if None in values.values() else read.xreplace(values)
+    values = {symbol: value for symbol, value in put.items() if symbol in read.free_symbols}
+    return None if None in values.values() else cast("Expr", read.xreplace(values))
 
 
 @dataclass(frozen=True)
