@@ -45,7 +45,7 @@ _TELLING = (
 """Words that a sentence behind a formula begins with."""
 _MARKS = re.compile(r"\s*(?:(?:[>✅☑✔→⟶•▪]|-{1,2}>|<=>|#{1,6}(?=\s))\s*)*(?:\*\*(?=[^\W\d_]{2}))?")
 _BULLET = re.compile(r"\s*[-*]\s+")
-_WORD = r"[^\W\d_]+(?:['’.-][^\W\d_]+)*"
+_WORD = r"(?:[^\W\d_]{2,}(?:['’][^\W\d_]{1,9})?(?:[.-][^\W\d_]+)*|[^\W\d_](?!['’]))"
 _HEADING = re.compile(
     rf"(?P<words>{_WORD}(?:[ ,]{{1,3}}{_WORD}){{0,7}})(?: ?\(?\d{{1,2}}\)?)?[*_]{{0,2}}"
     r"(?: ?:(?![=:])[*_]{0,2}(?=[\s$\\(*])|\s*\n)\s*"
@@ -56,10 +56,13 @@ _UPRIGHT = re.compile(
     r"(?=[^\s=+*/^-])"
 )
 _SENTENCE = re.compile(
-    r"(?:[\s.,;$]|\\\]|\\q?quad(?![A-Za-z])|\\[,;: ])+(?:\\(?:text|textrm)\s?\{\s*)?"
+    r"(?:[\s.,;$]|\\\]|\\q?quad(?![A-Za-z])|\\[,;: ]){1,12}(?:\\(?:text|textrm)\s?\{\s*)?"
     rf"(?P<words>(?:{_TELLING})\b[\w\s$'’,.;:()–{{}}\\-]{{2,200}})$",
     re.IGNORECASE,
 )
+_LONGEST_SENTENCE = 240
+"""Characters of a sentence that is looked for behind a formula."""
+_MOST_WORDS = 12
 _SHORT = 3
 """Letters of the shortest word that is one."""
 
@@ -106,14 +109,16 @@ def _beginning(text: str, words: Words) -> int:
 
 def _heading_end(text: str, begin: int, words: Words) -> int:
     """Return the end of ``Equation of motion:`` or of a line of words."""
+    marked = re.search(r"#{1,6}\s|\*\*$", text[:begin]) is not None
     begin += len(text[begin:]) - len(text[begin:].lstrip())
     found = _HEADING.match(text, begin)
-    if found is None:
+    if found is None or not (marked or ":" in found.group()):
         return begin
     said = re.findall(_WORD, found["words"])
     coordinates = [word for word in said if isinstance(words.scope.symbol(word), Coordinate)]
     others = [word for word in said if word not in coordinates]
-    return found.end() if (not others and coordinates) or _is_prose(others, words) else begin
+    named = not others and coordinates and "=" in text[found.end() :]  # x: m x'' = …, and not x : 1
+    return found.end() if named or _is_prose(others, words) else begin
 
 
 def _upright_end(text: str, begin: int, words: Words) -> int:
@@ -126,7 +131,10 @@ def _upright_end(text: str, begin: int, words: Words) -> int:
 def _lead_end(text: str, begin: int, words: Words) -> int:
     """Return the end of the words that lead to a formula, the last of which says so: ``… lautet``, ``we get``."""
     at = end = begin + len(text[begin:]) - len(text[begin:].lstrip())
-    while found := _LEADING_WORD.match(text, at):
+    for _ in range(_MOST_WORDS):
+        found = _LEADING_WORD.match(text, at)
+        if found is None:
+            break
         word = re.sub(r"['’]s$", "", found["word"])
         if not _is_prose([word], words) and word.lower() not in SMALL and word != "I":
             break
@@ -138,7 +146,7 @@ def _lead_end(text: str, begin: int, words: Words) -> int:
 
 def _end(text: str, begin: int, words: Words) -> int:
     """Return where a sentence behind the formula begins."""
-    found = _SENTENCE.search(text, begin)
+    found = _SENTENCE.search(text, max(begin, len(text) - _LONGEST_SENTENCE))
     if found is None or not re.search(r"[\w)\]}'′″²³$]$", text[begin : found.start()]):
         return len(text)
     said = [re.sub(r"['’]s$", "", word) for word in re.findall(_WORD, found["words"])]

@@ -41,6 +41,8 @@ _UPRIGHT = re.compile(
 )
 _UNIT = re.compile(r"(?<=[\w)\]}'′″])[ \t]{1,9}\[([^\[\]]{1,40})\][\s.]{0,9}$")
 _LETTERS_OF_A_WORD = 3
+_LONGEST = 160
+"""Characters of a remark that is looked for behind a formula."""
 _NAMED = frozenset(("Newton", "Lagrange", "Hamilton", "Hooke", "Kepler", "EOM", "ODE"))
 """Words that are a remark by themselves."""
 
@@ -61,20 +63,20 @@ def without_remarks(text: str, scope: Scope) -> str:
     >>> without_remarks("(a) x'' = -x (harmonic oscillator)", scope).strip(), without_remarks("x' = 1 (x)", scope)
     ("x'' = -x", "x' = 1 (x)")
     """
-    if len(text) > MAX_CHARACTERS or not re.search(r"[(\[]|\\text|\\mathrm|\s*\d\d?\.\s", text):
+    if len(text) > MAX_CHARACTERS or not re.search(r"[(\[]|\\text|\\mathrm|\d\.\s", text):
         return text
     text = _without_number_before(text, scope) if "=" in text else text
     text = _without_numbers_behind(text, scope)
-    words = Words(text, scope)
-    if (remark := _WORDS.search(text)) and _says_nothing(remark[1], words):
+    words, tail = Words(text, scope), max(0, len(text) - _LONGEST)
+    if (remark := _WORDS.search(text, tail)) and _says_nothing(remark[1], words):
         return text[: remark.start()]
     if (
-        (remark := _UPRIGHT.search(text))
+        (remark := _UPRIGHT.search(text, tail))
         and _is_behind(text, remark.start())
         and _says_nothing(remark[1], words)
     ):
         return text[: remark.start()] + remark[2]
-    if (unit := _UNIT.search(text)) and "=" in text and is_a_unit(unit[1]):
+    if (unit := _UNIT.search(text, tail)) and "=" in text and is_a_unit(unit[1]):
         letters = re.findall("[A-Za-zΩ]+", unit[1])
         if all(is_known(letter, words) for letter in letters):
             reason = f"is [{unit[1]}] a unit, or a factor?"
@@ -88,6 +90,10 @@ def _without_number_before(text: str, scope: Scope) -> str:
     if found is None:
         return text
     name, lead = found["name"] or found["point"], found["lead"]
+    if found["point"] and re.search(
+        r"\d\.(?!\d)", text[found.end() :]
+    ):  # 2. m x'' + 2. k x, as programs print numbers
+        return text
     if not re.search(_WIDE, found["gap"]) and _may_be_a_factor(name, scope):
         shown = text[found.end("lead") : found.start("gap")]
         raise _asked(text, found.end("lead") + 1, shown, f"{shown}*")
@@ -100,7 +106,8 @@ def _without_numbers_behind(text: str, scope: Scope) -> str:
     at = 0
     for found in _BEHIND.finditer(text):
         before = text[: found.start()].rstrip(" ~.,")
-        if not _is_behind(text, found.start()) or _calls(before, scope):
+        letters = found["name"].isalpha() and "=" not in text  # m (a)
+        if letters or not _is_behind(text, found.start()) or _calls(before, scope):
             continue
         shown = text[found.end("gap") : found.end()].strip()
         if (

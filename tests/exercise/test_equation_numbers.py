@@ -53,4 +53,4 @@ def test_a_number_that_may_be_a_factor_is_asked_about(claim):
 def test_factors_stay_factors():
     assert said(["2 m x'' + 2 k x = 0", "2*m*y'' + {}*k*y = 0"], "4") == "holds"
     assert said(["(2)*m x'' + 2 k x = 0", "(3 m) y'' + {} k y = 0"], "6") == "holds"
-    assert said(["2. m x'' + 2. k x = 0", "2. m y'' + {} k y = 0"], "4") == "holds"
+    assert said(["2.0 m x'' + 2. k x = 0", "2. m y'' + {}. k y = 0"], "4") == "holds"

@@ -236,7 +236,10 @@ MEANINGS = {
     "V''(2x)": "",
 }
 """What the page's table of plain text shows, and what it is; empty where the meaning has no plain spelling."""
-OTHER_ROWS = ("other names", "abbreviations", "around", "left sides", "chains", "several")
+OTHER_ROWS = (
+    "other names", "abbreviations", "rates by their letters", "prose", "derivations", "numbers of equations",
+    "decimal commas", "remarks", "around", "left sides", "chains", "several",
+)  # fmt: skip
 """Rows about whole answers, which are tested with questions."""
 
 

@@ -23,7 +23,6 @@ from canon.exercise.question.question import (
     Regular,
     Same,
     SameEquations,
-    Tells,
     more_than_zero,
     wrong_variables,
 )
@@ -75,10 +74,6 @@ def dissipative(reading: Reading) -> Iterator[Question]:
         rate = sp.Add(*(velocity(x) * Q for x, Q in zip(q, forces, strict=True)), -lagrangian.L.diff(t))
         part = Part("dE/dt", claimed, rate, on_the_motion(lagrangian, claimed), "energy_rate")
         yield Same((part,), reading.domain, lambda: rate)
-        if not reading.has("claim") and claimed.has(*map(acceleration, q)):
-            energy = sp.Add(*(velocity(x) * lagrangian.L.diff(velocity(x)) for x in q), -lagrangian.L)
-            itself = Part("dE/dt", claimed, time_derivative(energy, q, t))
-            yield Tells((Same((itself,), reading.domain),), "it is dE/dt itself, whatever forces act")
         written = [a for a in map(acceleration, q) if claimed.has(a)]
         yield Determines(lambda: (f"dE/dt stays open: it is written with {written[0]}",) if written else ())
 

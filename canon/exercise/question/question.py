@@ -289,7 +289,8 @@ def decide(question: Question, deadline: Deadline) -> Verdict:
             verdict = _all_vanish(Same((part,), domain), deadline)
             if not verdict.fails:
                 return verdict
-            other = [decide(each, deadline) for each in otherwise() if not isinstance(each, Determines)]
+            asks = (each for each in otherwise() if not isinstance(each, Determines | Tells))
+            other = [decide(each, deadline) for each in asks]
             if other and all(each.holds for each in other):
                 return all_hold(other, part.name)
             return replace(verdict, feedback=said)

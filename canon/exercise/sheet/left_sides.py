@@ -154,7 +154,8 @@ def _by_letters(place: str, number: int, name: str, alone: bool, scope: Scope) -
 def _by_name(place: str, number: int, name: str, keys: Mapping[str, Any], scope: Scope) -> Quantity:
     """Return a component that is called as its variable, with the dots of a rate or by the letter of one."""
     _, rates = _COMPONENTS[place]
-    also = ((s, 0) for s in _by_letter(place, number, name, keys.get("q", [])) if not scope.declares(s))
+    letters = _by_letter(place, number, name, keys.get("q", []))
+    also = ((s, 0) for s in letters if s in scope.other_names or not scope.declares(s))
     return Quantity(f"{name}{chr(39) * rates}", ((name, rates), (f"{name}{'_dot' * rates}", 0), *also))
 
 

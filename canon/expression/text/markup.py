@@ -9,7 +9,7 @@ import html
 import re
 from dataclasses import dataclass, field
 from html.parser import HTMLParser
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 from canon.expression.text.tokens import MAX_CHARACTERS, LanguageError
 
@@ -71,7 +71,7 @@ _DECIMAL_COMMA = re.compile(
     r"(?<![\w.,])(?:(0),([0-9]{1,9})|([1-9][0-9]{0,3}),([0-9]{1,2}|[0-9]{4,9}))(?![\w.,])"
 )
 """``9,81``; ``1,000`` may be a thousand, and what is in brackets a list."""
-_BRACED_COMMA = re.compile(r"([0-9]+)\{,\}(?=[0-9])")
+_BRACED_COMMA = re.compile(r"(?<![0-9])([0-9]{1,12})\{,\}(?=[0-9])")
 _MAPLE = re.compile(r"(?:\[\s?)?(?<=[\s,\[])([a-z])\s?\$\s?([1-4])(\s?\])?(?=\s?\))")
 """Maple's ``t$2`` and ``[t$2]``."""
 _FENCE = re.compile(r"^\s*```[a-z]{0,12}\n(.*?)\n?```\s*$", re.DOTALL)
@@ -180,10 +180,15 @@ def _have_a_bracket(above: str, below: str) -> bool:
 def _with_points(text: str) -> str:
     """Return a text with points in place of decimal commas outside brackets, as long as it was."""
     text = _BRACED_COMMA.sub(r"  \1.", text) if "{,}" in text else text
-    for found in reversed(list(_DECIMAL_COMMA.finditer(text))):
-        before = text[: found.start()]
-        if sum(map(before.count, "([{")) == sum(map(before.count, ")]}")):
-            text = f"{before}{found.group().replace(',', '.')}{text[found.end() :]}"
+    commas = [found.start() + found.group().index(",") for found in _DECIMAL_COMMA.finditer(text)]
+    if commas:
+        steps = ((c in "([{") - (c in ")]}") for c in text)
+        depths = list(accumulate(steps))
+        signs = list(text)
+        for comma in commas:
+            if depths[comma] == 0:
+                signs[comma] = "."
+        text = "".join(signs)
     return text
 
 

@@ -54,6 +54,7 @@ MAX_SIDES = 100
 """Most sides in one field."""
 NAMED = r"(?:(?:where|with)\s)?\s*\\?[^\W\d]\w{0,11}(?:_\{\w{1,9}\})?\s*(?:\^2|\^\{2\}|\*\*2|²)?\s*"
 """A name before ``=``, or its square."""
+_LONGEST_DEFINITION = 150
 _IN_BRACKETS = re.compile(rf"\s\({NAMED}=[^=]{{1,90}}\)[\s.]*$")
 
 
@@ -125,7 +126,7 @@ def opened(text: str) -> str:
     >>> opened("I θ'' = -k θ (I = m l²)"), opened("x = a (b + c)")
     ("I θ'' = -k θ ,I = m l² ", 'x = a (b + c)')
     """
-    found = _IN_BRACKETS.search(text)
+    found = _IN_BRACKETS.search(text, max(0, len(text) - _LONGEST_DEFINITION))
     if found is None or not text[: found.start()].strip():
         return text
     begin, end = found.start() + 1, text.rindex(")")

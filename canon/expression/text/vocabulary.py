@@ -42,7 +42,7 @@ def _csch(x: Expr) -> Expr:
 
 
 def _coth(x: Expr) -> Expr:
-    return sp.cosh(x) / sp.sinh(x)
+    return 1 / sp.tanh(x)
 
 
 def _elliptic_pi(*arguments: Expr, evaluate: bool = True) -> Expr:

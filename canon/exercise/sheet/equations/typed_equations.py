@@ -6,7 +6,7 @@ is true of every system, and no answer.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -47,38 +47,34 @@ def typed_equations(place: str, value: Any, known: Sides) -> list[Any]:
     if len(texts) == 1 and isinstance(texts[0], str):
         text = texts[0]
         texts = vector_equations(text) or field_texts.equations_listed(text) or _products(place, text, known)
-    said = [each for i, text in enumerate(texts) for each in _of_text(f"{place}[{i}]", text, known)]
-    refused = [each for each in said if isinstance(each, _Refused)]
-    if refused and len(refused) == len(said):
-        first = refused[0]
-        raise known.told(first.place, first.text, first.side, first.reason, first.remedy)
-    known.passed.extend(f"{each.shown} in {each.place} is passed over: {each.reason}" for each in refused)
-    return [each for each in said if not isinstance(each, _Refused)]
+    return [each for i, text in enumerate(texts) for each in _of_text(f"{place}[{i}]", text, known)]
 
 
 def _of_text(place: str, text: Any, known: Sides) -> list[Any]:
-    """Return the equations of one text, and what in it is none."""
+    """Return the equations of one text; what in it is true of every system is passed over beside them."""
     statements = known.statements(place, text) if isinstance(text, str) else ()
     if not isinstance(text, str) or _is_plain(statements, known):
         return [text]
-    found: list[Any] = []
-    for statement in statements:
-        if len(statements) > 1 and known.given(place).restates(statement):
-            continue
-        said = _chain(place, statement, known)
-        found += [replace(said, text=text)] if isinstance(said, _Refused) else said
-    return found
+    others = (
+        statements if len(statements) == 1 else [s for s in statements if not known.given(place).restates(s)]
+    )
+    said = [_chain(place, statement, known) for statement in others]
+    refused = [each for each in said if isinstance(each, _Refused)]
+    for each in refused:
+        if each.is_unknown or len(refused) == len(said):
+            raise known.told(place, text, each.side, each.reason, each.remedy)
+        known.passed.append(f"{each.shown} in {place} is passed over: {each.reason}")
+    return [equation for each in said if not isinstance(each, _Refused) for equation in each]
 
 
 @dataclass(frozen=True)
 class _Refused:
     """A statement that is no equation of motion, and why."""
 
-    place: str
     side: Side
+    is_unknown: bool
     reason: str
     remedy: str
-    text: str = ""
 
     @property
     def shown(self) -> str:
@@ -122,7 +118,7 @@ def _chain(place: str, statement: Statement, known: Sides) -> list[str] | _Refus
     equations = [*made, *(field_texts.equation_between(a, b) for a, b in pairwise(rest))]
     if not said or not equations:
         unknown = next((side for side in sides if known.is_unknown(place, side)), None)
-        return _Refused(place, unknown or sides[0], *_no_equation(said, unknown))
+        return _Refused(unknown or sides[0], unknown is not None, *_no_equation(said, unknown))
     return equations
 
 
