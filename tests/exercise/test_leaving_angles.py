@@ -119,3 +119,13 @@ def test_what_has_no_closed_form_is_not_solved():
     assert real_solutions(sp.cos(x) - x, x, Domain()) is None
     assert real_solutions(sp.sin(x) + sp.sin(sp.sqrt(2) * x), x, Domain()) is None
     assert real_solutions(a * (sp.cos(x) - 1), x, Domain()) is None  # where a = 0 every x would do
+
+
+def test_half_angles_come_back_after_whole_turns():
+    x = sp.Symbol("x", real=True)
+    found = real_solutions(sp.sin(x) + 2 * sp.cos(x) - 1, x, Domain(()))
+    values = [
+        root.value.subs(dict.fromkeys(root.value.free_symbols, k)) for root in found for k in (-1, 0, 2)
+    ]
+    assert len({sp.N(value) for value in values}) == 6
+    assert all(abs(sp.N(sp.sin(value) + 2 * sp.cos(value) - 1)) < 1e-12 for value in values)

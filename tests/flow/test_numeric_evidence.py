@@ -169,7 +169,9 @@ def test_the_runge_lenz_vector_has_one_sign():
 def test_an_integral_may_hold_the_time():
     oscillator = Hamiltonian((p**2 + w**2 * q**2) / 2, q, p)
     phase = q * cos(w * time) - p * sin(w * time) / w
-    assert integral_along_motion(phase, oscillator, (-3, 9), [1, 0.5], parameters={w: 2}).speaks == "for"
+    seen = integral_along_motion(phase, oscillator, (-3, 9), [1, 0.5], parameters={w: 2})
+    assert seen.speaks == "for"
+    assert "over t = -3 … 9" in seen.text
     twin = phase.subs(time, -time)
     assert integral_along_motion(twin, oscillator, (-3, 9), [1, 0.5], parameters={w: 2}).speaks == "against"
     assert integral_along_motion(DRIVEN.H, DRIVEN, (0, 9), [1, 0.3]).speaks == "against"

@@ -242,6 +242,16 @@ ENGINES = {
 }
 
 
+def test_a_runge_kutta_method_carries_deviations_too():
+    task = task_of(PENDULUM, [1.0, 0.3], RK4(), 0.25)
+    going = VariationalDeviations(task, np.eye(2), orthogonal=False)
+    log = sum(going.advance() for _ in task.plan.instants[1:])
+    M = going.vectors()[:, :, 0] * np.exp(log[:, 0])
+    known = flow_jacobian(PENDULUM, (0, 2), [1.0, 0.3], method=RK4(), step=0.25)
+    np.testing.assert_allclose(M, known.final, atol=1e-11)
+    np.testing.assert_allclose(going.states()[:, 0], known.y[:, -1], atol=1e-11)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("system", "y0", "method", "step"), ENGINES.values(), ids=ENGINES)
 def test_other_engines_carry_deviations_too(system, y0, method, step):

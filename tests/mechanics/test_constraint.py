@@ -275,6 +275,19 @@ def test_a_multiplier_that_depends_on_the_direction_is_refused():
         multiplier_along(held, {r: a}, theta, sp.S.Zero)
 
 
+def test_one_velocity_squared_is_not_affine():
+    with pytest.raises(ValueError, match="not affine in the velocities"):
+        ConstrainedLagrangian(Lagrangian(x.dot**2 + y.dot**2, [x, y]), nonholonomic=[x.dot**2 + y.dot])
+
+
+@pytest.mark.parametrize(
+    ("given", "words"), [({x: 1, y: 2}, "keys of a dictionary"), ({x, y}, "members of a set")]
+)
+def test_what_has_no_order_is_refused_by_its_name(given, words):
+    with pytest.raises(TypeError, match=words):
+        ConstrainedLagrangian(Lagrangian(x.dot**2 + y.dot**2, [x, y]), holonomic=given)
+
+
 @pytest.mark.parametrize(
     ("make", "words"),
     [

@@ -8,6 +8,7 @@ import sympy as sp
 
 from canon.expression.symbols.symbol import velocity
 from canon.scene import SCENES, find
+from canon.scene.picture import ring
 
 DRAWN = [scene for scene in SCENES if scene.picture_of is not None and scene.picture_of(scene.symbols).bars]
 STRETCHED = (
@@ -116,3 +117,10 @@ def test_springs_hold_masses_and_the_ground_rests(scene):
     assert all(rests(point) for line in picture.ground for point in line)
     lines = (*picture.ground, *picture.bars)
     assert all(one != other for line in lines for one, other in itertools.pairwise(line))
+
+
+def test_a_ring_is_closed_and_round():
+    points = np.array(ring((1.0, 2.0), (3.0, 0.0), (0.0, 3.0)), dtype=float)
+    assert points.shape == (37, 2)
+    np.testing.assert_allclose(points[0], points[-1], atol=1e-14)
+    np.testing.assert_allclose(np.linalg.norm(points - [1.0, 2.0], axis=1), 3.0)

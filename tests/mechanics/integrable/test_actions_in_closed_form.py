@@ -9,7 +9,11 @@ from canon.exercise.sheet.sheet import Claim
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.integrable.actions import action_variables
 from canon.mechanics.integrable.closed_form import actions_in_closed_form as module
-from canon.mechanics.integrable.closed_form.actions_in_closed_form import closed_actions
+from canon.mechanics.integrable.closed_form.actions_in_closed_form import (
+    closed_actions,
+    in_reciprocals,
+    three_roots,
+)
 from canon.mechanics.integrable.complete_integral import hamilton_jacobi
 from canon.mechanics.integrable.turning_points import NoCycleError
 from canon.proof.domain.domain import Domain
@@ -308,3 +312,18 @@ def test_a_pendulum_with_a_second_harmonic_has_them_too(energy, kind):
     assert torus.cycles[0].kind.value == kind
     (action,) = closed_actions(torus)
     assert (action.name, action.tori) == ("elliptic coordinates", 3)
+
+
+def test_three_real_roots_in_their_order():
+    z = sp.Symbol("z")
+    found = three_roots(sp.Poly(3 * (z - 1) * (z + 2) * (z - 5), z))
+    assert [round(float(root), 12) for root in found] == [-2.0, 1.0, 5.0]
+
+
+@pytest.mark.parametrize(
+    "f", [sp.tan(q) ** 2, sp.cot(q) ** 2, sp.tanh(2 * q) ** 2, sp.sec(q), sp.csc(q), sp.sech(q)]
+)
+def test_functions_in_reciprocals_are_what_they_were(f):
+    found = in_reciprocals(f)
+    assert not found.has(*({type(g) for g in f.atoms(sp.Function)}))
+    assert abs(sp.N((found - f).subs(q, sp.Rational(7, 10)))) < 1e-12

@@ -1,14 +1,19 @@
 """Angles in closed form: Kepler's equation, the pendulum's amplitude; each known integral in both ways; wrong twins."""
 
+from types import SimpleNamespace
+
 import pytest
 import sympy as sp
+from flint import arb
 
 from canon.flow.propagation import propagate
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.integrable.actions import action_variables
 from canon.mechanics.integrable.closed_form import angles_in_closed_form as module
 from canon.mechanics.integrable.closed_form.angles_in_closed_form import closed_angles
+from canon.mechanics.integrable.closed_form.incomplete_integrals import integrals_by_terms
 from canon.mechanics.integrable.complete_integral import hamilton_jacobi
+from canon.mechanics.integrable.cycles import CycleKind
 
 q, p = sp.symbols("q p", real=True)
 r, theta, w = sp.symbols("r theta omega", positive=True)
@@ -33,6 +38,16 @@ ONE = {
     "soft spring": (p**2 / 2 + q**2 / 2 - q**4 / 8, {q: 0, p: HALF}),
 }
 QUICK = {"oscillator", "pendulum", "rotation backwards over π"}
+
+
+@pytest.mark.parametrize("wave", [sp.sin, sp.cos])
+def test_a_polar_angle_of_two_turns_a_turn_has_the_derivative_of_its_integral(wave):
+    f, place = wave(2 * q) ** -2, sp.Rational(9, 10) if wave is sp.sin else sp.Rational(3, 10)
+    cycle = SimpleNamespace(kind=CycleKind.LIBRATION, turning_points=(arb(0.2), arb(1.3)))
+    found = integrals_by_terms("polar angle", sp.Integer(5), {f: sp.Integer(-1)}, q, cycle)
+    for each, integral in found.items():
+        slope = integral.part.diff(q).subs(q, place)
+        assert abs(sp.N(slope - (each / (2 * sp.sqrt(5 - f))).subs(q, place))) < 1e-12
 
 
 def torus_of(H, start):

@@ -246,6 +246,15 @@ def test_sums_and_products_come_apart(i, j, n, s):
     assert product_parts((u**n + 1) * (sp.exp(v) + s) + 1, [[u], [v]], EVERYWHERE) is None
 
 
+def test_a_sum_comes_apart_as_it_is_written():
+    u, v = sp.symbols("u v", positive=True)
+    assert sum_parts(u + v**2 + 3, [[u], [v]], EVERYWHERE) == [u, v**2 + 3]
+
+
+def test_free_motion_separates_in_elliptic_coordinates_where_they_are_asked_for():
+    assert hamilton_jacobi(Hamiltonian(PLANE, [x, y], [px, py]), "elliptic", focal=c).chart.name == "elliptic"
+
+
 def test_the_motion_of_the_oscillator_follows_from_its_integral():
     found = hamilton_jacobi(SEPARABLE["oscillator"])
     (integral,) = found.motion

@@ -8,7 +8,7 @@ from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.integrable.complete_integral import hamilton_jacobi
 from canon.mechanics.integrable.separability import is_separable
 from canon.mechanics.integrable.separated_momenta import NotSeparatedError
-from canon.mechanics.integrable.staeckel_matrix import staeckel_matrix
+from canon.mechanics.integrable.staeckel_matrix import StaeckelMatrix, staeckel_matrix
 from canon.proof.domain.domain import EVERYWHERE
 
 A, B, C = 5, 7, 11
@@ -34,6 +34,15 @@ def ellipsoidal(potential, shift=lambda x: 0, extra=0):
         y, z = (s for s in Q if s != x)
         terms.append((2 * cubic(x) * (p + shift(x)) ** 2 + potential(x)) / ((x - y) * (x - z)))
     return Hamiltonian(sp.Add(*terms) + extra, Q, P)
+
+
+def test_constants_solve_for_the_separation_constant_whatever_factor_a_row_has():
+    x, y, alpha, E = sp.symbols("x y alpha E", real=True)
+    rows, v = ((2 * x, 3 * x**2), (y, 5 * y)), (x**2, y**3)
+    a = -rows[1][0] / sp.Matrix(rows).det()
+    squares = [row[0] * alpha + row[1] * E - each for row, each in zip(rows, v, strict=True)]
+    (found,) = StaeckelMatrix((x, y), rows, v).constants(squares, a)
+    assert sp.simplify(found - alpha) == 0
 
 
 @pytest.mark.slow
