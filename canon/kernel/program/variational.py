@@ -47,7 +47,8 @@ def variational(system: HamiltonEquations, variations: int) -> HamiltonEquations
         )
     if system.lie_poisson is not None:
         raise ValueError(
-            "the derivative of Lie–Poisson splittings is not known here: use Taylor(), DOP853() or Gauss(6)"
+            "variational equations are no sum of parts that a Lie–Poisson splitting moves by: it has a tangent loop of "
+            "its own; use Taylor(), DOP853() or Gauss(6)"
         )
     graph, x = system.graph, (*system.q, *system.p)
     slopes = [graph.gradient(rate, x) for rate in (*system.velocity, *system.force)]
