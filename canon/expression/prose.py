@@ -1,8 +1,8 @@
 r"""Prose around a formula: words that lead to it, its heading, and what is said of it behind.
 
 ``**Equation of motion:** $m\ddot x + kx = 0$``, ``Die Bewegungsgleichung lautet m x'' = -k x``, ``m x'' = -k x, where k
-is the spring constant``. Words are passed over where none of them can stand in a formula of the question and none may
-change what it says, as ``not`` and ``approximately`` do.
+is the spring constant``. Words are passed over where all of them are of a list of those that name a formula or lead to
+it: no other word is known to leave it as it is, and a name of the question is never one of them.
 """
 
 from __future__ import annotations
@@ -11,39 +11,48 @@ import re
 from typing import TYPE_CHECKING
 
 from canon.expression.symbols.symbol import Coordinate
-from canon.expression.text.declared_names import Words, function_name
-from canon.expression.text.tokens import GREEK, MAX_CHARACTERS, LanguageError, tokens
-from canon.expression.text.vocabulary import CONSTANTS, OTHER_NAMES
+from canon.expression.text.tokens import MAX_CHARACTERS
 
 if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
 
-__all__ = ["CHANGING", "SMALL", "is_known", "without_prose"]
+__all__ = ["is_prose", "without_prose"]
 
-SMALL = frozenset((
-    "a", "an", "and", "as", "at", "by", "for", "from", "in", "is", "it", "its", "of", "on", "so", "the", "to",
-    "we", "all", "da", "das", "der", "die", "es", "im", "la", "le", "el", "lo", "du", "de", "en", "un", "est",
-    "que", "por", "se", "los",
+_VOCABULARY = frozenset((
+    "a", "an", "and", "as", "at", "by", "from", "in", "is", "it", "its", "of", "on", "so", "the", "to", "we",
+    "all", "are", "this", "that", "these", "which", "where", "here", "there", "then", "thus", "hence",
+    "therefore", "finally", "now", "also", "have", "has", "get", "gets", "got", "find", "found", "obtain",
+    "obtains", "obtained", "gives", "give", "yields", "follows", "follow", "leads", "reads", "becomes",
+    "equals", "using", "use", "used", "apply", "applying", "simplifying", "solving", "solved", "be", "into",
+    "our", "my", "one", "i", "equation", "equations", "motion", "system", "systems", "answer", "answers",
+    "result", "results", "solution", "final", "formula", "expression", "form", "forms", "problem", "part",
+    "case", "law", "laws", "principle", "definition", "hamiltonian", "lagrangian", "routhian", "kamiltonian",
+    "momentum", "momenta", "energy", "function", "kinetic", "potential", "total", "conserved", "constant",
+    "constants", "coordinate", "coordinates", "canonical", "generalized", "generalised", "lagrange", "hamilton",
+    "newton", "euler", "hooke", "kepler", "poisson", "bracket", "brackets", "simple", "harmonic", "oscillator",
+    "pendulum", "spring", "mass", "length", "gravity", "gravitational", "acceleration", "angular", "frequency",
+    "natural", "velocity", "speed", "time", "radius", "angle", "angles", "well", "known", "standard", "usual",
+    "required", "desired", "new", "transformed", "corresponding", "order", "differential", "ordinary",
+    "dynamics", "ode", "eom", "denotes", "denote", "called", "for", "every", "any", "der", "die", "das", "den",
+    "dem", "des", "ein", "eine", "ist", "sind", "lautet", "lauten", "somit", "daher", "damit", "daraus", "dies",
+    "dieses", "folgt", "ergibt", "erhält", "erhalten", "man", "wir", "sich", "bewegungsgleichung",
+    "bewegungsgleichungen", "gleichung", "gleichungen", "lösung", "antwort", "ergebnis", "energie",
+    "hamiltonfunktion", "lagrangefunktion", "impuls", "federkonstante", "masse", "länge", "wobei", "dann",
+    "nach", "la", "le", "les", "un", "une", "du", "de", "est", "sont", "donc", "ainsi", "alors", "nous",
+    "obtient", "trouve", "avons", "équation", "équations", "mouvement", "réponse", "résultat", "énergie",
+    "hamiltonien", "lagrangien", "el", "los", "las", "una", "es", "son", "por", "lo", "tanto", "entonces",
+    "luego", "así", "obtenemos", "resulta", "queda", "ecuación", "ecuaciones", "movimiento", "respuesta",
+    "solución", "resultado", "energía", "hamiltoniano", "lagrangiano", "del", "que", "se",
 ))  # fmt: skip
-"""Words of few letters that are in no formula."""
-CHANGING = frozenset((
-    "about", "almost", "approximately", "except", "false", "half", "if", "incorrect", "minus", "never", "no",
-    "not", "only", "or", "plus", "roughly", "squared", "times", "twice", "unless", "when", "wrong", "nicht",
-    "falsch", "pas", "falso",
-))  # fmt: skip
-"""Words that may change what the formula says."""
+"""Words that name a formula or lead to it and never change what it says; any other word is read as a part of it."""
 _LEADING = frozenset((
     "also", "are", "becomes", "equals", "find", "follows", "get", "gets", "gives", "have", "hence", "is",
-    "obtain", "obtains", "reads", "so", "that", "then", "therefore", "thus", "yields", "using", "from", "leads",
-    "to", "lautet", "lauten", "ist", "folgt", "somit", "daher", "dann", "donc", "ainsi", "alors", "est",
-    "trouve", "obtient", "tanto", "entonces", "luego", "es", "resulta", "obtenemos", "quindi", "dunque",
+    "obtain", "obtains", "reads", "so", "that", "then", "therefore", "thus", "yields", "lautet", "lauten",
+    "ist", "folgt", "ergibt", "somit", "daher", "dann", "donc", "ainsi", "alors", "est", "trouve", "obtient",
+    "tanto", "entonces", "luego", "es", "resulta", "obtenemos",
 ))  # fmt: skip
 """Words that a formula may follow."""
-_TELLING = (
-    "which|where|this|that|as|because|since|for|with|the|it|these|here|wobei|dies|das|où|ce|cela|donde|esto"
-)
-"""Words that a sentence behind a formula begins with."""
-_MARKS = re.compile(r"\s*(?:(?:[>✅☑✔→⟶•▪]|-{1,2}>|<=>|#{1,6}(?=\s))\s*)*(?:\*\*(?=[^\W\d_]{2}))?")
+_MARKS = re.compile(r"\s*(?:(?:[>✅☑✔→⟶•▪⇒]|=>|-{1,2}>|<=>|#{1,6}(?=\s))\s*)*(?:\*\*(?=[^\W\d_]{2}))?")
 _BULLET = re.compile(r"\s*[-*]\s+")
 _WORD = r"(?:[^\W\d_]{2,}(?:['’][^\W\d_]{1,9})?(?:[.-][^\W\d_]+)*|[^\W\d_](?!['’]))"
 _HEADING = re.compile(
@@ -56,15 +65,16 @@ _UPRIGHT = re.compile(
     r"(?=[^\s=+*/^-])"
 )
 _SENTENCE = re.compile(
-    r"(?:[\s.,;$]|\\\]|\\q?quad(?![A-Za-z])|\\[,;: ]){1,12}(?:\\(?:text|textrm)\s?\{\s*)?"
-    rf"(?P<words>(?:{_TELLING})\b[\w\s$'’,.;:()–{{}}\\-]{{2,200}})$",
+    r"(?:[\s.,;$]|\\\]|\\q?quad(?![A-Za-z])|\\[,;: ]){1,12}(?:\\(?:text|textrm)\s?\{\s*)?(?:"
+    r"for (?:all|every|any) \}?\s?\$?(?P<every>\\?\w{1,12})\$?"
+    r"|(?:where|wobei|où|donde) \}?\s?\$?(?P<symbol>\\?\w{1,12})\$? (?P<role>(?:is|denotes) [^\W\d_ ][\w ]{2,80})"
+    r"|(?P<words>(?:which|this|that|it) is [^\W\d_][^\W\d_ -]*(?:[ -][^\W\d_]+){1,12}))\s?\}?[\s.$]{0,9}$",
     re.IGNORECASE,
 )
+"""What may be said of a formula behind it: for whom it holds, what a letter is, what it is called."""
 _LONGEST_SENTENCE = 240
 """Characters of a sentence that is looked for behind a formula."""
 _MOST_WORDS = 12
-_SHORT = 3
-"""Letters of the shortest word that is one."""
 
 
 def without_prose(text: str, scope: Scope) -> str:
@@ -86,92 +96,91 @@ def without_prose(text: str, scope: Scope) -> str:
         or not re.search(r"[^\W\d_]{2}|[:>✅☑✔→⟶•▪]", text)
     ):
         return text
-    words = Words(text, scope)
-    begin = _beginning(text, words)
-    end = _end(text, begin, words)
+    begin = _beginning(text, scope)
+    end = _end(text, begin, scope)
     return text if (begin, end) == (0, len(text)) else " " * begin + text[begin:end]
 
 
-def _beginning(text: str, words: Words) -> int:
+def _beginning(text: str, scope: Scope) -> int:
     """Return where the formula begins behind marks, headings and the words that lead to it."""
     marks = _MARKS.match(text)
     begin = marks.end() if marks and marks.group().strip() and text[marks.end() :].strip() else 0
     bullet = _BULLET.match(text, begin)
-    if bullet and (behind := _heading_end(text, bullet.end(), words)) > bullet.end():
+    if bullet and (behind := _heading_end(text, bullet.end(), scope)) > bullet.end():
         begin = behind
     for _ in range(3):
-        found = max(step(text, begin, words) for step in (_heading_end, _upright_end, _lead_end))
+        found = max(step(text, begin, scope) for step in (_heading_end, _upright_end, _lead_end))
+        marks = _MARKS.match(text, found)
+        found = marks.end() if marks and found > begin else found
         if found == begin or not text[found:].strip():
             break
         begin = found
     return begin
 
 
-def _heading_end(text: str, begin: int, words: Words) -> int:
+def _heading_end(text: str, begin: int, scope: Scope) -> int:
     """Return the end of ``Equation of motion:`` or of a line of words."""
     marked = re.search(r"#{1,6}\s|\*\*$", text[:begin]) is not None
     begin += len(text[begin:]) - len(text[begin:].lstrip())
     found = _HEADING.match(text, begin)
     if found is None or not (marked or ":" in found.group()):
         return begin
-    said = re.findall(_WORD, found["words"])
-    coordinates = [word for word in said if isinstance(words.scope.symbol(word), Coordinate)]
+    rest, said = text[found.end() :], re.findall(_WORD, found["words"])
+    coordinates = [word for word in said if isinstance(scope.symbol(word), Coordinate)]
     others = [word for word in said if word not in coordinates]
-    named = not others and coordinates and "=" in text[found.end() :]  # x: m x'' = …, and not x : 1
-    return found.end() if named or _is_prose(others, words) else begin
+    if coordinates and not (
+        "=" in rest and all(word in rest for word in coordinates)
+    ):  # x : 1, and y: x'' = 0
+        return begin
+    return found.end() if (not others or is_prose(others, scope)) and said else begin
 
 
-def _upright_end(text: str, begin: int, words: Words) -> int:
-    r"""Return the end of ``\text{Thus, }``."""
+def _upright_end(text: str, begin: int, scope: Scope) -> int:
+    r"""Return the end of ``\text{Thus, }``: words with a sign behind them, or the last of which leads to a formula."""
     begin += len(text[begin:]) - len(text[begin:].lstrip())
     found = _UPRIGHT.match(text, begin)
-    return found.end() if found and _is_prose(re.findall(_WORD, found["words"]), words) else begin
+    if found is None:
+        return begin
+    said = re.findall(_WORD, found["words"])
+    leads = found["words"].rstrip().endswith((",", ":")) or said[-1].lower() in _LEADING
+    return found.end() if leads and is_prose(said, scope) else begin
 
 
-def _lead_end(text: str, begin: int, words: Words) -> int:
+def _lead_end(text: str, begin: int, scope: Scope) -> int:
     """Return the end of the words that lead to a formula, the last of which says so: ``… lautet``, ``we get``."""
     at = end = begin + len(text[begin:]) - len(text[begin:].lstrip())
     for _ in range(_MOST_WORDS):
         found = _LEADING_WORD.match(text, at)
-        if found is None:
-            break
-        word = re.sub(r"['’]s$", "", found["word"])
-        if not _is_prose([word], words) and word.lower() not in SMALL and word != "I":
+        if found is None or not is_prose([found["word"]], scope):
             break
         at = found.end()
-        if word.lower() in _LEADING:
+        if found["word"].lower() in _LEADING:
             end = at
-    return end if re.match(r"[^=+*/^]", text[end:]) else begin
+    return end if re.match(r"=>|[^=+*/^]", text[end:]) else begin
 
 
-def _end(text: str, begin: int, words: Words) -> int:
+def _end(text: str, begin: int, scope: Scope) -> int:
     """Return where a sentence behind the formula begins."""
     found = _SENTENCE.search(text, max(begin, len(text) - _LONGEST_SENTENCE))
     if found is None or not re.search(r"[\w)\]}'′″²³$]$", text[begin : found.start()]):
         return len(text)
-    said = [re.sub(r"['’]s$", "", word) for word in re.findall(_WORD, found["words"])]
-    short = [word for word in said if len(word) < _SHORT or word in GREEK or word in GREEK.values()]
-    others = [word for word in said if word not in short]
-    return found.start() if len(said) > 1 and _is_prose(others, words) else len(text)
+    said = re.findall(_WORD, found["role"] or found["words"] or "all")
+    return found.start() if is_prose(said, scope) else len(text)
 
 
-def _is_prose(said: list[str], words: Words) -> bool:
-    """Tell whether none of some words can stand in a formula, and none may change what it says."""
-    if not said or CHANGING.intersection(word.lower() for word in said):
-        return False
-    other = [word for word in said if word.lower() not in SMALL]
-    return all(len(word) >= _SHORT and not is_known(word, words) for word in other)
+def is_prose(said: list[str], scope: Scope) -> bool:
+    """Tell whether words are all of those that never change a formula, and none is a name of the question.
+
+    Examples
+    --------
+    >>> from canon.expression.text.scope import Scope
+    >>> [is_prose(text.split(), Scope()) for text in ("equation of motion", "twice the energy", "Hooke's law", "")]
+    [True, False, True, False]
+    """
+    plain = [re.sub(r"['’]s$", "", word) for word in said]
+    known = all(word.lower() in _VOCABULARY for each in plain for word in each.split("-"))
+    return bool(said) and known and not any(_is_a_name(word, scope) for word in plain)
 
 
-def is_known(word: str, words: Words) -> bool:
-    """Tell whether a word, or the letters that it is made of, can stand in a formula."""
-    if word in CONSTANTS or word in OTHER_NAMES or word in GREEK.values() or function_name(word, words.scope):
-        return True
-    try:
-        (token, *_) = tokens(word)
-        read = words.read(token, bracket=False)
-    except LanguageError as error:
-        return "can be read as" in error.reason
-    parts = [part.text for part in read if part.text != "d"]  # of a differential
-    known = (words.declared(part) or part.isdigit() or function_name(part, words.scope) for part in parts)
-    return bool(parts) and all(known)
+def _is_a_name(word: str, scope: Scope) -> bool:
+    return word in scope.functions or (scope.declares(word) and word != "I")

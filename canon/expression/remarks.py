@@ -10,8 +10,9 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from canon.expression.prose import CHANGING, SMALL, is_known
-from canon.expression.text.declared_names import Words, function_name
+from canon.expression.prose import is_prose
+from canon.expression.text.declared_names import function_name
+from canon.expression.text.scope import split
 from canon.expression.text.tokens import GREEK, MAX_CHARACTERS, LanguageError
 from canon.expression.text.units import is_a_unit
 
@@ -23,7 +24,7 @@ __all__ = ["without_remarks"]
 _NUMBER = r"[1-9]\d{0,2}(?:\.\d{1,2})?[a-z]?"
 _ROMAN = r"i{1,3}|iv|v|I{1,3}|IV|V"
 _BLANK = r"[ \t~]|\\[,;:! ]"
-_WIDE = r"\\q{1,2}uad(?![A-Za-z])|\\hfill(?![A-Za-z])|\\hspace\*?\{[^{}]{1,12}\}|\.{3,9}|…|-{2,9}|—"
+_WIDE = r"\\q{1,2}uad(?![A-Za-z])|\\hfill(?![A-Za-z])|\\hspace\*?\{[^{}]{1,12}\}|\.{3,9}|…"
 _BEFORE = re.compile(
     rf"(?P<lead>\s*(?:\$\$?|\\\[|\\\()?\s*)(?:[(\[](?P<name>{_NUMBER}|[a-h]|{_ROMAN})[)\]]|(?P<point>[1-9]\d?)\.)"
     rf"(?P<gap>(?:{_BLANK}|{_WIDE}){{1,9}})(?=[^\s=+*/^-])"
@@ -40,7 +41,6 @@ _UPRIGHT = re.compile(
     r"\{\s{0,9}\(?([A-Za-z][A-Za-z'’ -]{2,60})\)?\s{0,9}\}([\s.$]{0,9}|\s*\\[\])]\s*)$"
 )
 _UNIT = re.compile(r"(?<=[\w)\]}'′″])[ \t]{1,9}\[([^\[\]]{1,40})\][\s.]{0,9}$")
-_LETTERS_OF_A_WORD = 3
 _LONGEST = 160
 """Characters of a remark that is looked for behind a formula."""
 _NAMED = frozenset(("Newton", "Lagrange", "Hamilton", "Hooke", "Kepler", "EOM", "ODE"))
@@ -67,18 +67,18 @@ def without_remarks(text: str, scope: Scope) -> str:
         return text
     text = _without_number_before(text, scope) if "=" in text else text
     text = _without_numbers_behind(text, scope)
-    words, tail = Words(text, scope), max(0, len(text) - _LONGEST)
-    if (remark := _WORDS.search(text, tail)) and _says_nothing(remark[1], words):
+    tail = max(0, len(text) - _LONGEST)
+    if (remark := _WORDS.search(text, tail)) and _says_nothing(remark[1], scope):
         return text[: remark.start()]
     if (
         (remark := _UPRIGHT.search(text, tail))
         and _is_behind(text, remark.start())
-        and _says_nothing(remark[1], words)
+        and _says_nothing(remark[1], scope)
     ):
         return text[: remark.start()] + remark[2]
     if (unit := _UNIT.search(text, tail)) and "=" in text and is_a_unit(unit[1]):
         letters = re.findall("[A-Za-zΩ]+", unit[1])
-        if all(is_known(letter, words) for letter in letters):
+        if all(_is_known(letter, scope) for letter in letters):
             reason = f"is [{unit[1]}] a unit, or a factor?"
             raise LanguageError(text, unit.start(1), reason, "leave the unit out, or write * before a factor")
         return text[: unit.start()]
@@ -149,12 +149,12 @@ def _is_behind(text: str, start: int) -> bool:
     return re.search(r"[\w)\]}'′″]$", text[:start].rstrip(" ~.,")) is not None
 
 
-def _says_nothing(remark: str, words: Words) -> bool:
-    """Tell whether words in brackets are a remark: several, none of which can be read, or a name known for it."""
-    found = re.findall("[A-Za-z]+", re.sub("['’]s", "", remark))
-    if CHANGING.intersection(word.lower() for word in found):
-        return False
-    long = [word for word in found if word.lower() not in SMALL]
-    if any((len(word) < _LETTERS_OF_A_WORD and word not in _NAMED) or is_known(word, words) for word in long):
-        return False
-    return (len(found) > 1 and bool(long)) or remark.strip() in _NAMED
+def _says_nothing(remark: str, scope: Scope) -> bool:
+    """Tell whether words in brackets are a remark: several of those that change nothing, or a name known for it."""
+    found = remark.split()
+    return (len(found) > 1 and is_prose(found, scope)) or remark.strip() in _NAMED
+
+
+def _is_known(letters: str, scope: Scope) -> bool:
+    """Tell whether the letters of a unit are a declared name, or a product of such."""
+    return scope.declares(letters) or split(letters, scope) != ""

@@ -19,6 +19,7 @@ from canon.exercise.question.deadline import SIDE_SECONDS, Deadline
 from canon.exercise.question.implicit_point import refuted_at_a_point
 from canon.exercise.question.question import TELLING, Determines, Part, Question, Same, Stated, decide, fails
 from canon.expression.symbols.symbol import velocity
+from canon.expression.text.open_readings import is_angle
 from canon.mechanics.algebra.constraint_manifold import EmptyDomainError, check_not_empty, on_manifold
 from canon.mechanics.algebra.solve_for_symbol import named
 from canon.mechanics.algebra.substitution import exchanged, substitute, symbols_of
@@ -164,7 +165,13 @@ def _place_of_an_angle(leaves: Expr, force: Expr, q: Sequence[Symbol]) -> Expr |
         waves = [f for f in force.atoms(sp.sin, sp.cos) if f.has(x)]
         inside = force.xreplace({f: sp.Dummy() for f in waves})
         whole = not inside.has(x) and all(cast("Expr", f.args[0]).diff(x).is_integer for f in waves)
-        if not c.has(*q) and waves and whole and sp.expand(force - substitute(force, {x: -x})) == 0:
+        if (
+            is_angle(x.name)
+            and not c.has(*q)
+            and waves
+            and whole
+            and sp.expand(force - substitute(force, {x: -x})) == 0
+        ):
             return sp.cos(x) - sp.cos(c)
     return None
 

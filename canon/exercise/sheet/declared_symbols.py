@@ -119,7 +119,8 @@ class DeclaredSymbols:
         for name, symbol in names.items():
             if _OF_OMEGA.fullmatch(name):
                 yield f"omega{name[1:]}", symbol
-            if isinstance(symbol, Coordinate) and _CARTESIAN.fullmatch(name):  # v_theta would be r θ'
+            moves = isinstance(symbol, Coordinate) and not self.is_names("p")  # there x' follows from p
+            if moves and _CARTESIAN.fullmatch(name):  # v_theta would be r θ'
                 first, second = velocity(symbol), acceleration(symbol)
                 rates = ((f"v_{name}", first), (f"v_{name}_dot", second), (f"a_{name}", second))
                 yield from (rate for rate in rates if rate[0][0] not in names)  # ax may be a x

@@ -30,7 +30,6 @@ __all__ = [
     "is_definition",
     "is_of_another",
     "label_of",
-    "names_its_entries",
 ]
 
 OTHER_SPELLINGS: Mapping[str, tuple[str, ...]] = MappingProxyType(
@@ -211,19 +210,14 @@ def is_asked(label: Label | None, asked: Quantity, scope: Scope) -> bool:
 
 
 def _same_bracket(label: Label, asked: tuple[str, str], scope: Scope) -> bool:
-    """Tell whether a bracket is the one that is asked: what can be read of it agrees."""
-    return False not in _agree(label, asked, scope)
+    """Tell whether a bracket is the one that is asked: what can be read of it agrees, and one entry can be.
 
-
-def _agree(label: Label, asked: tuple[str, str], scope: Scope) -> list[bool | None]:
-    return [_same_entry(entry, wanted, scope) for entry, wanted in zip(label.arguments, asked, strict=True)]
-
-
-def names_its_entries(label: Label | None, asked: Quantity, scope: Scope) -> bool:
-    """Tell whether a left side says of what it is the bracket: one entry at least can be read."""
-    if label is None or label.name or asked.bracket is None:
-        return False
-    return True in _agree(label, asked.bracket, scope)
+    ``{f, g}`` is that of the functions under these keys.
+    """
+    if label.arguments == ("f", "g") and not (scope.declares("f") or scope.declares("g")):
+        return True
+    agree = [_same_entry(entry, wanted, scope) for entry, wanted in zip(label.arguments, asked, strict=True)]
+    return False not in agree and True in agree
 
 
 def _same_entry(entry: str, wanted: str, scope: Scope) -> bool | None:

@@ -28,12 +28,12 @@ from canon.exercise.sheet.left_sides import (
     is_asked,
     is_of_another,
     label_of,
-    names_its_entries,
 )
 from canon.exercise.sheet.quantities.abbreviations import without_abbreviations
 from canon.exercise.sheet.typed_values import signed_tables, values_under
 from canon.expression.parse import LanguageError, parse_expression
 from canon.expression.text.declared_names import key_of
+from canon.expression.text.vocabulary import CONSTANTS, OTHER_NAMES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -182,8 +182,11 @@ class _Plain:
         if not all(type(text) is str for text in texts):
             return value
 
+        alone = key in ("I", "conserved", "not_conserved")  # any name may stand before such an answer
+
         def is_asked_for(label: Label) -> bool:
-            return key == "I" or any(is_asked(label, each, self.scope) for each in asked)
+            named = alone and label in self.first_names(key, texts)
+            return named or any(is_asked(label, each, self.scope) for each in asked)
 
         try:
             found = without_abbreviations(texts, self.scope, is_asked_for)
@@ -191,11 +194,18 @@ class _Plain:
             return value
         if found is None or (found.unused and "multipliers" in self.of.keys):  # T = 17 m1 may be meant as one
             return value
+        if len(found.texts) > 1 and not isinstance(value, list) and not self.has_equations(key):
+            return value  # more than one expression, which is told
         self.found.passed += [
             f"{said} in {key} is passed over: the name is not declared, and nothing here uses it"
             for said in found.unused
         ]
         return found.texts if isinstance(value, list) or len(found.texts) > 1 else found.texts[0]
+
+    def first_names(self, key: str, texts: Sequence[str]) -> list[Label | None]:
+        """Return what stands before the first sign of each text."""
+        said = [next(iter(self.sides.statements(key, text)), None) for text in texts]
+        return [label_of(each.sides[0].said) for each in said if each is not None]
 
     def without_remainders(self, key: str, value: Any) -> Any:
         """Return expansions without ``+ O(x^5)`` and ``+ …``, which is told."""
@@ -254,7 +264,7 @@ class _Plain:
             else:
                 reason, remedy = f"one expression is asked for: {asked.shown}", "leave the others out"
             raise self.sides.told(place, text, other, reason, remedy)
-        first, *others = next(iter(statements)).sides
+        first, *others = self.without_name_of_bracket(place, next(iter(statements)).sides, asked)
         sides = [first, *(side for side in others if not self.is_constant(place, side))]
         if len(sides) == 1:
             return first.text
@@ -262,18 +272,25 @@ class _Plain:
         if not self.is_asked(sides[0], asked) and self.is_asked(sides[-1], asked):
             sides = [sides[-1], *sides[:-1]]  # p²/2m = H
         if self.is_asked(sides[0], asked):
-            self.tell_name(place, sides[0], asked)
+            if place == "H" and sides[0].said.startswith("E"):
+                self.found.passed.append("E in H is read as H, which is asked for")
             sides = sides[1:]
         else:
             self.refuse_other_names(place, text, sides[0], asked)
         return self.last_of(place, text, sides, asked)
 
-    def tell_name(self, place: str, side: Side, asked: Quantity) -> None:
-        """Note what a name is taken for, where it is one of the writer's own."""
-        if place == "H" and side.said.startswith("E"):
-            self.found.passed.append("E in H is read as H, which is asked for")
-        if asked.bracket and not names_its_entries(label_of(side.said), asked, self.scope):
-            self.found.passed.append(f"{side.said} in {place} is taken for {asked.shown}, which is asked for")
+    def without_name_of_bracket(self, place: str, sides: Sequence[Side], asked: Quantity) -> Sequence[Side]:
+        """Return sides without a name of the writer's own for the value of a bracket, ``L_z = …``, which is told."""
+        label = label_of(sides[0].said)
+        one = re.fullmatch(r"[\s$]*\\?[^\W\d_]+(?:_\{?\w{1,4}\}?)?\s*", sides[0].text)
+        if not (asked.bracket and len(sides) == 2 and one and label and label.name) or label.rates:
+            return sides
+        if label.name in CONSTANTS or label.name in OTHER_NAMES or is_asked(label, asked, self.scope):
+            return sides
+        if key_of(label.name) in {key_of(name) for name in self.scope.spelled}:
+            return sides
+        self.found.passed.append(f"{label.name} in {place} is taken for {asked.shown}, which is asked for")
+        return sides[1:]
 
     def last_of(self, place: str, text: str, sides: list[Side], asked: Quantity) -> str:
         """Return the last side of a chain; those before it are links, or definitions that are passed over."""
@@ -346,8 +363,6 @@ class _Plain:
         if asked.shown == "I" and label is not None and label.name and not label.rates:
             given = self.scope.declares(label.name) or isinstance(self.of.keys.get(label.name), str)
             asked = asked if given else Quantity("I", ((label.name, 0),))
-        if asked.bracket and label is not None and label.name and not (label.rates or label.arguments):
-            return key_of(label.name) not in {key_of(name) for name in self.scope.spelled}  # L_z = …
         rate = label is not None and label.rates > 0 and not has_primes(side.text)
         if rate and asked.shown in OTHER_SPELLINGS:
             return False  # dH/dt and Ḣ are no names of what H' is a name of

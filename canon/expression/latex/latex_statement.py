@@ -25,11 +25,11 @@ MAX_SIDES = 100
 _SEEN = 60
 """Characters that are looked at on either side of a cut."""
 _ARROWS = "Rightarrow|Longrightarrow|implies|iff|Leftrightarrow|Longleftrightarrow|therefore|rightarrow|longrightarrow"
-_BETWEEN = (
-    r"\\(?:text|textrm|mbox|mathrm|textit)\s*\{[\s,;~]*"
-    r"(?:and|und|et|thus|so|hence|then|i\.e\.|where|with|mit|wobei|avec|où)[\s,;:~]*\}"
-)
+_UPRIGHT = r"\\(?:text|textrm|mbox|mathrm|textit)\s*\{[\s,;~]*"
+_JOINING = rf"{_UPRIGHT}(?:and|und|et|where|with|mit|wobei|avec|où)[\s,;:~]*\}}"
 """Words between statements."""
+_BETWEEN = rf"(?:{_JOINING}|{_UPRIGHT}(?:thus|so|hence|then|i\.e\.)[\s,;:~]*\}})"
+"""The same, and those of a conclusion."""
 _TOKEN = re.compile(
     r"\\(?:begin|end)\s*\{\s*d?cases\s*\}"
     rf"|\\(?:{_ARROWS})(?![A-Za-z])"
@@ -53,8 +53,8 @@ _GOES_ON = re.compile(
 _RELATION_FIRST = re.compile(
     r"(?:\s|\\q?quad|\\[,;:! ])*(?:=|\\equiv(?![A-Za-z])|[<>]|\\[lg]eq?(?![A-Za-z]))"
 )
-_ENDS = re.compile(rf"(?:[\s.,;~]|\\[,;:! ]|\\q?quad(?![A-Za-z])|\\\\|{_BETWEEN})*$")
-_BEGINS = re.compile(rf"(?:[\s~]|\\[,;:! ]|\\q?quad(?![A-Za-z])|{_BETWEEN}|(?:and|where|with)(?=[\s,:]))*")
+_ENDS = re.compile(rf"(?:[\s.,;~]|\\[,;:! ]|\\q?quad(?![A-Za-z])|\\\\|{_JOINING})*$")
+_BEGINS = re.compile(rf"(?:[\s~]|\\[,;:! ]|\\q?quad(?![A-Za-z])|{_JOINING}|(?:and|where|with)(?=[\s,:]))*")
 
 
 _DEFINES = re.compile(rf"(?:[\s~]|\\[,;:! ]|\\q?quad(?![A-Za-z])|{_BETWEEN})*{NAMED}(?:=|\\equiv)")

@@ -45,12 +45,7 @@ _PROMPT = re.compile(
     r"|^\s*(?:(?:\d{1,2}|[a-h]|i{1,3})\))[ \t]{1,9}(?=\S)|^\s*\*[ \t]{1,9}(?=\S[^\n]{0,400}=)"
 )
 """What programs and people write before a line: prompts, names of what follows, numbers and points of a list."""
-_SAID_BEFORE = re.compile(
-    r"^\s*(?:(?:(?:so|thus|hence|therefore|finally|then|(?:and |so )?we (?:get|find|have|obtain)|this gives"
-    r"|it follows that)"
-    r"\s?[,:]?\s{1,9}(?=[^\s+*/=<>^)\],-]|=>))|(?:=>|⇒|⟹|∴|→|•|▪)\s{0,9}(?=\S)){1,9}",
-    re.IGNORECASE,
-)
+_SAID_BEFORE = re.compile(r"^\s*(?:(?:=>|⇒|⟹|∴|→|•|▪)\s{0,9}(?=\S)){1,9}")
 _SAID_BEHIND = re.compile(
     r"[\s.,;]{0,9}(?:✓|✔|∎|□|■|\\(?:checkmark|qed|blacksquare)\b|\\(?:text|mathrm)\{\s*(?:q\.e\.d\.|QED)\s*\}|\bQED\b|q\.\s?e\.\s?d\.?)[\s.]*$"
 )

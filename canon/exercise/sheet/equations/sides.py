@@ -87,12 +87,18 @@ class Sides:
         label = label_of(side.said)
         if label is None or not label.name or label.rates or label.arguments:
             return False
-        try:
-            parse_expression(side.text, self.scope)
-        except LanguageError:
+        if not self.can_read(side):
             names = re.findall(rf"(?<!\w){re.escape(side.said)}(?!\w)", repr(self.keys))
             return len(names) == 1
         return False
+
+    def can_read(self, side: Side) -> bool:
+        """Tell whether a side is an expression in the declared names."""
+        try:
+            parse_expression(side.text, self.scope)
+        except LanguageError:
+            return False
+        return True
 
     def is_unknown(self, place: str, side: Side) -> bool:
         """Tell whether a side is made of functions that nobody gave."""

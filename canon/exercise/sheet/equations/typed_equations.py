@@ -61,7 +61,7 @@ def _of_text(place: str, text: Any, known: Sides) -> list[Any]:
     said = [_chain(place, statement, known) for statement in others]
     refused = [each for each in said if isinstance(each, _Refused)]
     for each in refused:
-        if each.is_unknown or len(refused) == len(said):
+        if not each.is_true or len(refused) == len(said):
             raise known.told(place, text, each.side, each.reason, each.remedy)
         known.passed.append(f"{each.shown} in {place} is passed over: {each.reason}")
     return [equation for each in said if not isinstance(each, _Refused) for equation in each]
@@ -72,7 +72,7 @@ class _Refused:
     """A statement that is no equation of motion, and why."""
 
     side: Side
-    is_unknown: bool
+    is_true: bool
     reason: str
     remedy: str
 
@@ -118,14 +118,15 @@ def _chain(place: str, statement: Statement, known: Sides) -> list[str] | _Refus
     equations = [*made, *(field_texts.equation_between(a, b) for a, b in pairwise(rest))]
     if not said or not equations:
         unknown = next((side for side in sides if known.is_unknown(place, side)), None)
-        return _Refused(unknown or sides[0], unknown is not None, *_no_equation(said, unknown))
+        is_true = all(map(known.can_read, rest)) if said else known.given(place).is_lagranges_equation(sides)
+        return _Refused(unknown or sides[0], is_true and unknown is None, *_no_equation(said, unknown))
     return equations
 
 
 def _worked_out(place: str, sides: Sequence[Side], rest: Sequence[Side], known: Sides) -> list[str]:
     """Return the equations of origins with the side beside them that is read."""
     made: list[str] = []
-    for side, beside in zip(sides, (*sides[1:], sides[-2]), strict=True):
+    for side, beside in zip(sides, (*sides[1:], sides[max(0, len(sides) - 2)]), strict=True):
         if rest and side not in rest:
             made += known.origin(place, side, beside if beside in rest else rest[0])
     return made

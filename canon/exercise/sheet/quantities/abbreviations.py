@@ -22,6 +22,7 @@ from canon.expression.symbols.symbol import (
     velocity,
 )
 from canon.expression.text.declared_names import key_of
+from canon.expression.text.scope import split
 from canon.expression.text.vocabulary import CONSTANTS, OTHER_NAMES
 
 if TYPE_CHECKING:
@@ -202,6 +203,8 @@ def _definition(statement: Statement, scope: Scope, is_asked: Callable[[Label], 
 def _said(side: Side) -> str:
     """Return a side in plain spelling, without the word before it: ``where ω₀² = g/l``."""
     plain = _WHERE.sub(r"\1", side.text)
+    if re.search(r"[^\W_]\s+[^\W_]", plain.strip("$ ")):  # k x is no name
+        return ""
     return side.said if plain == side.text else re.sub(r"\s", "", plain)
 
 
@@ -210,7 +213,8 @@ def _new_name(said: str, scope: Scope, is_asked: Callable[[Label], bool]) -> str
     label = label_of(said)
     if label is None or not label.name or label.rates or label.arguments or is_asked(label):
         return ""
-    return "" if key_of(label.name) in {key_of(name) for name in scope.spelled} else label.name
+    taken = key_of(label.name) in {key_of(name) for name in scope.spelled} or split(label.name, scope)
+    return "" if taken else label.name
 
 
 def _rate_alone(side: Side, scope: Scope) -> Symbol | None:

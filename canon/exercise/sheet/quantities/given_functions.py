@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Any, cast
 
 import sympy as sp
 
+from canon.exercise.sheet.left_sides import is_definition
 from canon.expression.parse import LanguageError, parse_expression
 from canon.expression.symbols.symbol import time_derivative, velocity
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from sympy import Expr, Symbol
 
@@ -29,6 +30,8 @@ _LONGEST = 200
 """Characters of a side that is looked at."""
 _BY_LETTER = ("L", "H", "V", "L1", "L2")
 """Functions of a claim that people put into formulas by their letters; F is too often a force."""
+_FORCES = ("F", "Qnc", "constraints", "multipliers", "force", "contact")
+"""Keys of what stands in Lagrange's equations beside L."""
 _TERM = re.compile(
     r"(?P<sign>[-+]?)(?:"
     r"(?P<rate>\(?d/dt\)?)?(?P<open>\(?)∂(?P<of>[A-Z])/∂(?P<by>[^-+=∂(){}\[\]/*]{1,20})(?P<close>\)?)"
@@ -140,11 +143,28 @@ class GivenFunctions:
         first, *others = statement.sides
         if not others or not self._gives(first.said):
             return False
+        between = [side for side in others[:-1] if not is_definition(side.said, first.said, self.scope)]
         try:
-            given, said = (parse_expression(f, self.scope) for f in (self.keys[first.said], others[-1].text))
+            given = parse_expression(self.keys[first.said], self.scope)
+            said = [parse_expression(side.text, self.scope) for side in (*between, others[-1])]
         except LanguageError:
             return False
-        return sp.expand(given - said) == 0
+        return all(sp.expand(given - each) == 0 for each in said)
+
+    def is_lagranges_equation(self, sides: Sequence[Side]) -> bool:
+        """Tell whether two sides are Lagrange's equation of a given L and no other forces, ``d/dt(∂L/∂x') = ∂L/∂x``."""
+        if len(sides) != 2 or not self._gives("L") or any(key in self.keys for key in _FORCES):
+            return False
+        values = [sp.S.Zero if side.said == "0" else self.worked_out(side.said) for side in sides]
+        q = self._symbols("q")
+        if None in values or not q:
+            return False
+        L, said = parse_expression(self.keys["L"], self.scope), sp.expand(values[0] - values[1])
+        for x in q:
+            own = sp.expand(time_derivative(L.diff(velocity(x)), q, self.scope.time) - L.diff(x))
+            if own != 0 and (said == own or said == -own):
+                return True
+        return False
 
     def says_a_momentum(self, statement: Statement) -> bool:
         """Tell whether a statement is true of a momentum, ``p = m x'`` beside a Hamiltonian that is asked for."""
