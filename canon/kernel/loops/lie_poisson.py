@@ -187,19 +187,11 @@ class _Flows:
         return [[(j, known[node]) for j, node in row] for row in rows]
 
     def _turn(self, turn: PlaneTurns, time: str) -> None:
-        """Write turns of planes; those that turn twice as fast as others take their sines and cosines."""
-        w, f = self.w, LaneFormulas(self.w)
+        """Write turns of planes, and what they do to deviations."""
+        w = self.w
         (rate,) = self._evaluated([turn.rate])
-        (by_state,) = [[]] if self.beside is None else self._slopes([turn.rate])
-        angle, known = w.algebra("mul", time, rate), dict[Fraction, tuple[str, str]]()
-        for speed in sorted({abs(c) for _, _, c in turn.planes}):
-            if speed / 2 in known:
-                sine, cosine = known[speed / 2]
-                double = f.mul(f.add(sine, sine), cosine)
-                known[speed] = double, f.mul(f.sub(cosine, sine), f.add(cosine, sine))
-            else:
-                own = angle if speed == 1 else w.algebra("mul", angle, w.constant(speed))
-                known[speed] = sine_and_cosine(w, own)
+        by_state = [] if self.beside is None else self._slopes([turn.rate])[0]
+        known = self._sines_and_cosines(turn, w.algebra("mul", time, rate))
         shears = {speed: self._shears(*both) for speed, both in known.items()}
         for i, j, c in turn.planes:
             first, second, sign = shears[abs(c)]
@@ -210,14 +202,32 @@ class _Flows:
         for own in self.beside.vectors():
             further = w.algebra("mul", time, self.beside.combined(own, by_state))
             for i, j, c in turn.planes:
-                first, second, sign = shears[abs(c)]
-                a, b = (i, j) if c > 0 else (j, i)
-                for moved, by, factor in ((a, b, first), (b, a, second), (a, b, first)):
-                    self.beside.increase(own, moved, factor, w.load(own, by))
                 beyond = w.algebra("mul", w.constant(abs(c)), further)
-                for moved, by, more in ((a, b, w.negative(beyond)), (b, a, beyond)):
-                    turned = w.algebra("mul", sign, w.load(own, moved))
-                    w.store(w.multiply_add(more, w.load(self.y, by), turned), own, moved)
+                self._turn_deviation(self.beside, own, (i, j) if c > 0 else (j, i), shears[abs(c)], beyond)
+
+    def _sines_and_cosines(self, turn: PlaneTurns, angle: str) -> dict[Fraction, tuple[str, str]]:
+        """Write sine and cosine of the angle of each speed; twice as fast as another takes those of the other."""
+        w, f, known = self.w, LaneFormulas(self.w), dict[Fraction, tuple[str, str]]()
+        for speed in sorted({abs(c) for _, _, c in turn.planes}):
+            if speed / 2 in known:
+                sine, cosine = known[speed / 2]
+                double = f.mul(f.add(sine, sine), cosine)
+                known[speed] = double, f.mul(f.sub(cosine, sine), f.add(cosine, sine))
+            else:
+                own = angle if speed == 1 else w.algebra("mul", angle, w.constant(speed))
+                known[speed] = sine_and_cosine(w, own)
+        return known
+
+    def _turn_deviation(
+        self, beside: _Deviating, own: str, plane: tuple[int, int], shears: tuple[str, str, str], beyond: str
+    ) -> None:
+        """Write the turn of a deviation in a plane, and what the angle beyond turns the state by."""
+        w, (a, b), (first, second, sign) = self.w, plane, shears
+        for moved, by, factor in ((a, b, first), (b, a, second), (a, b, first)):
+            beside.increase(own, moved, factor, w.load(own, by))
+        for moved, by, more in ((a, b, w.negative(beyond)), (b, a, beyond)):
+            turned = w.algebra("mul", sign, w.load(own, moved))
+            w.store(w.multiply_add(more, w.load(self.y, by), turned), own, moved)
 
     def _shears(self, sine: str, cosine: str) -> tuple[str, str, str]:
         """Write −tan and sine of the angle, or of what it exceeds half a turn by, and 1 or −1."""

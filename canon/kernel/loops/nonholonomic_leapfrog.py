@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from canon.kernel.llvm.linear_solver import LinearSolver, eliminated, magnitude
 from canon.kernel.llvm.loop import METHOD, Loop, blocks_of, compile_loop, increase, steps_of
@@ -64,6 +64,19 @@ def nonholonomic_loop(
             writing.step(w.load("%c", w.let(f"add i64 {i}, {METHOD}")), kept)
     made = compile_loop(w, len(system.q), compensated=compensated, carry=size + 2)
     return replace(made, iterated="the velocities and multipliers", remedy="take a smaller step, or Taylor()")
+
+
+class _Tables(NamedTuple):
+    """Registers of what the equations of a step hold at one place; "" for an entry that is 0."""
+
+    masses: list[list[str]]
+    turning: list[list[str]]
+    stiffness: list[list[str]]
+    rows: list[list[str]]
+    slopes: list[list[str]]
+    rests: list[str]
+    pull: list[str]
+    momenta: list[str]
 
 
 @dataclass(frozen=True)
@@ -224,45 +237,60 @@ class _Leapfrog:
 
     def _improve(self, half: str, *, moving: bool) -> None:
         """Write a step of Newton's method for v₁ − v₀ and λ; at a place q₁ that does not move any more, or does."""
-        w, given, n = self.w, self.of_rolling, self.n
+        w, n = self.w, self.n
         v, lost = self._after()
-        tables = given.masses, given.turning, given.stiffness, given.rows, given.slopes
-        nodes = [node for table in tables for row in table for node in row]
-        nodes += [*given.rests, *given.pull, *self._momenta]
-        found = iter(self._evaluated(nodes, w.load(self.clock, 1), self._loaded(self.place), v))
-        masses, turning, stiffness, rows, slopes = (
-            [[self._entry(node, next(found)) for node in row] for row in table] for table in tables
-        )
-        rests = [next(found) for _ in given.rests]
-        pull, momenta = [next(found) for _ in range(n)], list(found)
-        matrix, right = list[list[str]](), list[str]()
+        at = self._tables(v)
         square = w.algebra("mul", half, half)
-        for i in range(n):
-            row = masses[i] if not moving else [
-                self._sum((m, ""), (half, turn), (w.negative(square), stiff))
-                for m, turn, stiff in zip(masses[i], turning[i], stiffness[i], strict=True)
-            ]  # fmt: skip
-            matrix.append([*row, *(self._push(a, i) for a in range(self.k))])
-            missing = w.multiply_add(half, pull[i], w.load(self.wanted, i))
-            if momenta:
-                missing = w.algebra("sub", missing, momenta[i])
-            right.append(self._pushed(missing, i, () if momenta else masses[i]))
-        for a in range(self.k):
-            row = rows[a] if not moving else [
-                self._sum((slope, ""), (half, turn)) for slope, turn in zip(rows[a], slopes[a], strict=True)
-            ]  # fmt: skip
-            matrix.append([*row, *[""] * self.k])
-            terms = [(rows[a], v)]
-            if self.e:
-                terms.insert(0, (slopes[a], self._loaded(self.lost)))
-            if self._carries_velocities:
-                terms.insert(0, (rows[a], lost))
-            right.append(self._slip(rests[a], terms))
-        both = self._solved(matrix, right)
-        self._note(both[:n], [masses[i][i] for i in range(n)], v)
+        balance = [self._balance(at, i, half, square if moving else "") for i in range(n)]
+        slips = [self._slips(at, a, half if moving else "", v, lost) for a in range(self.k)]
+        both = self._solved(
+            [row for row, _ in (*balance, *slips)], [right for _, right in (*balance, *slips)]
+        )
+        self._note(both[:n], [at.masses[i][i] for i in range(n)], v)
         for i, value in enumerate(both):
             array, place = (self.change, i) if i < n else (self.multipliers, i - n)
             w.store(w.algebra("add", w.load(array, place), value), array, place)
+
+    def _tables(self, v: Sequence[str]) -> _Tables:
+        """Write what the equations hold at the place, with the velocities after the step."""
+        given = self.of_rolling
+        tables = given.masses, given.turning, given.stiffness, given.rows, given.slopes
+        nodes = [node for table in tables for row in table for node in row]
+        nodes += [*given.rests, *given.pull, *self._momenta]
+        found = iter(self._evaluated(nodes, self.w.load(self.clock, 1), self._loaded(self.place), v))
+        read = ([[self._entry(node, next(found)) for node in row] for row in table] for table in tables)
+        return _Tables(
+            *read, [next(found) for _ in given.rests], [next(found) for _ in given.pull], list(found)
+        )
+
+    def _balance(self, at: _Tables, i: int, half: str, square: str) -> tuple[list[str], str]:
+        """Write the row of a momentum, and what is lacking of it; with h²/4 where the place moves."""
+        w, row = self.w, at.masses[i]
+        if square:
+            row = [
+                self._sum((m, ""), (half, turn), (w.negative(square), stiff))
+                for m, turn, stiff in zip(row, at.turning[i], at.stiffness[i], strict=True)
+            ]
+        pushes = [self._push(a, i) for a in range(self.k)]
+        missing = w.multiply_add(half, at.pull[i], w.load(self.wanted, i))
+        if at.momenta:
+            missing = w.algebra("sub", missing, at.momenta[i])
+        return [*row, *pushes], self._pushed(missing, i, () if at.momenta else at.masses[i])
+
+    def _slips(
+        self, at: _Tables, a: int, half: str, v: Sequence[str], lost: Sequence[str]
+    ) -> tuple[list[str], str]:
+        """Write the row of a constraint, and how far it is missed; with h/2 where the place moves."""
+        row, terms = at.rows[a], [(at.rows[a], v)]
+        if half:
+            row = [
+                self._sum((slope, ""), (half, turn)) for slope, turn in zip(row, at.slopes[a], strict=True)
+            ]
+        if self.e:
+            terms.insert(0, (at.slopes[a], self._loaded(self.lost)))
+        if self._carries_velocities:
+            terms.insert(0, (at.rows[a], lost))
+        return [*row, *[""] * self.k], self._slip(at.rests[a], terms)
 
     def _entry(self, node: int, register: str) -> str:
         return "" if node == self.system.graph.zero else register
