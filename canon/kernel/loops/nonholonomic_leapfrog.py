@@ -258,10 +258,11 @@ class _Leapfrog:
         nodes = [node for table in tables for row in table for node in row]
         nodes += [*given.rests, *given.pull, *self._momenta]
         found = iter(self._evaluated(nodes, self.w.load(self.clock, 1), self._loaded(self.place), v))
-        read = ([[self._entry(node, next(found)) for node in row] for row in table] for table in tables)
-        return _Tables(
-            *read, [next(found) for _ in given.rests], [next(found) for _ in given.pull], list(found)
+        masses, turning, stiffness, rows, slopes = (
+            [[self._entry(node, next(found)) for node in row] for row in table] for table in tables
         )
+        rests, pull = [next(found) for _ in given.rests], [next(found) for _ in given.pull]
+        return _Tables(masses, turning, stiffness, rows, slopes, rests, pull, list(found))
 
     def _balance(self, at: _Tables, i: int, half: str, square: str) -> tuple[list[str], str]:
         """Write the row of a momentum, and what is lacking of it; with h²/4 where the place moves."""

@@ -155,11 +155,11 @@ class GivenFunctions:
         """Tell whether two sides are Lagrange's equation of a given L and no other forces, ``d/dt(∂L/∂x') = ∂L/∂x``."""
         if len(sides) != 2 or not self._gives("L") or any(key in self.keys for key in _FORCES):
             return False
-        values = [sp.S.Zero if side.said == "0" else self.worked_out(side.said) for side in sides]
+        left, right = (sp.S.Zero if side.said == "0" else self.worked_out(side.said) for side in sides)
         q = self._symbols("q")
-        if None in values or not q:
+        if left is None or right is None or not q:
             return False
-        L, said = parse_expression(self.keys["L"], self.scope), sp.expand(values[0] - values[1])
+        L, said = parse_expression(self.keys["L"], self.scope), sp.expand(left - right)
         for x in q:
             own = sp.expand(time_derivative(L.diff(velocity(x)), q, self.scope.time) - L.diff(x))
             if own != 0 and (said == own or said == -own):
