@@ -177,3 +177,12 @@ def test_a_map_of_many_degrees_of_freedom_that_fails_is_told_within_its_budget(p
     verdict = CanonicalTransformation(q, p, Q, P).is_canonical(budget=10.0)
     assert verdict.fails
     assert processor_seconds() - used < 10.0
+
+
+def test_json_that_lost_its_backslashes_is_told_how_json_writes_them(tmp_path):
+    sheet = tmp_path / "sheet.json"
+    sheet.write_text(
+        r'{"claims": [{"id": "a", "kind": "equality-only", "lhs": "$2\theta$", "rhs": "1"}]}', "utf-8"
+    )
+    (claim,) = canon.read_sheet(sheet).claims
+    assert "write it twice" in str(claim.errors[0])

@@ -369,7 +369,7 @@ def claim_from(keys: Any, number: int = 1, file: str = "") -> Claim:
     found = [("id", f"{unnamed} (a name for the claim)")] if id_ != name else []
     found += faults(kind, keys)
     found += [
-        (key, f"a backslash and a letter became one sign here{_QUOTES if file.endswith('.toml') else _TWICE}")
+        (key, f"a backslash and a letter became one sign here{_TWICE if file.endswith('.json') else _QUOTES}")
         for key in keys
         if _eaten(keys[key])
     ]
