@@ -165,3 +165,9 @@ def test_a_place_is_no_angle() -> None:
         "L": "m*(x_dot**2 + y_dot**2)/2 - m*g*y", "contact": "y - b*cos(x)",
     }  # fmt: skip
     assert status(question, leaves="x = acos(g/(b*x_dot**2))") != "holds"
+
+
+def test_coordinates_in_terms_of_others_are_told_where_they_stand() -> None:
+    question = {"kind": "lagrange-bracket", "variables": ["u", "v"], "q": ["v*si0nh(u)"], "p": ["u"]}
+    claim = claim_from({"id": "a", **question, "pairs": [{"f": "u", "g": "v", "value": "1"}]})
+    assert claim.errors or [judgement.status for judgement, _ in judgements(claim)][-1] == "invalid"

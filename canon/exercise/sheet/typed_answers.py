@@ -252,7 +252,8 @@ class _Plain:
         if not isinstance(text, str):
             return text
         given, statements = self.sides.given(place), self.sides.statements(place, text)
-        statements = [s for s in statements if not given.says_a_momentum(s)] or statements
+        if len(statements) > 1:
+            statements = [s for s in statements if not given.says_a_momentum(s)] or statements
         if len(statements) > 1:
             named = [s for s in statements if self.is_asked(s.sides[0], asked) and s.sides[1:]]
             other = next((s for s in statements if s not in named), statements[-1]).sides[0]

@@ -224,6 +224,9 @@ class GivenFunctions:
         names = self.keys.get(key)
         if not isinstance(names, list):
             return None
-        found = [parse_expression(name, self.scope) for name in names]
+        try:
+            found = [parse_expression(name, self.scope) for name in names]
+        except LanguageError:  # it is told where the names are read
+            return None
         symbols = [s for s in found if isinstance(s, sp.Symbol)]
         return symbols if len(symbols) == len(found) else None
