@@ -52,7 +52,7 @@ _LEADING = frozenset((
     "tanto", "entonces", "luego", "es", "resulta", "obtenemos",
 ))  # fmt: skip
 """Words that a formula may follow."""
-_MARKS = re.compile(r"\s*(?:(?:[>✅☑✔→⟶•▪⇒]|=>|-{1,2}>|<=>|#{1,6}(?=\s))\s*)*(?:\*\*(?=[^\W\d_]{2}))?")
+_MARKS = re.compile(r"\s*(?:(?:[>✅☑✔→⟶•▪⇒⟹∴]|=>|-{1,2}>|<=>|#{1,6}(?=\s))\s*)*(?:\*\*(?=[^\W\d_]{2}))?")
 _BULLET = re.compile(r"\s*[-*]\s+")
 _WORD = r"(?:[^\W\d_]{2,}(?:['’][^\W\d_]{1,9})?(?:[.-][^\W\d_]+)*|[^\W\d_](?!['’]))"
 _HEADING = re.compile(
@@ -90,11 +90,8 @@ def without_prose(text: str, scope: Scope) -> str:
     >>> without_prose("mass x'' = -x", scope)
     "mass x'' = -x"
     """
-    if (
-        len(text) > MAX_CHARACTERS
-        or not re.search(r"[=+*/^\\\d$'′]", text)
-        or not re.search(r"[^\W\d_]{2}|[:>✅☑✔→⟶•▪]", text)
-    ):
+    is_formula = re.search(r"[=+*/^\\\d$'′]", text) is not None or _MARKS.fullmatch(text[:1])
+    if len(text) > MAX_CHARACTERS or not is_formula:
         return text
     begin = _beginning(text, scope)
     end = _end(text, begin, scope)
@@ -128,9 +125,8 @@ def _heading_end(text: str, begin: int, scope: Scope) -> int:
     rest, said = text[found.end() :], re.findall(_WORD, found["words"])
     coordinates = [word for word in said if isinstance(scope.symbol(word), Coordinate)]
     others = [word for word in said if word not in coordinates]
-    if coordinates and not (
-        "=" in rest and all(word in rest for word in coordinates)
-    ):  # x : 1, and y: x'' = 0
+    of_them = "=" in rest and all(word in rest for word in coordinates)
+    if coordinates and not of_them:  # x : 1, and y: x'' = 0
         return begin
     return found.end() if (not others or is_prose(others, scope)) and said else begin
 
@@ -179,8 +175,4 @@ def is_prose(said: list[str], scope: Scope) -> bool:
     """
     plain = [re.sub(r"['’]s$", "", word) for word in said]
     known = all(word.lower() in _VOCABULARY for each in plain for word in each.split("-"))
-    return bool(said) and known and not any(_is_a_name(word, scope) for word in plain)
-
-
-def _is_a_name(word: str, scope: Scope) -> bool:
-    return word in scope.functions or (scope.declares(word) and word != "I")
+    return bool(said) and known and not any(w in scope.functions or scope.declares(w) for w in plain)

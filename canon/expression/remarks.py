@@ -38,7 +38,7 @@ _BEHIND = re.compile(
 _WORDS = re.compile(r"(?<=[\w)\]}'′″])[ \t]{1,9}\(([A-Za-z][A-Za-z'’ -]{2,60})\)[\s.]{0,9}$")
 _UPRIGHT = re.compile(
     r"(?:\s|~|\\[,;:! ]|\\q{1,2}uad){0,9}\\(?:text|textrm|textit|mathrm)\s?"
-    r"\{\s{0,9}\(?([A-Za-z][A-Za-z'’ -]{2,60})\)?\s{0,9}\}([\s.$]{0,9}|\s*\\[\])]\s*)$"
+    r"\{\s{0,9}\(([A-Za-z][A-Za-z'’ -]{2,60})\)\s{0,9}\}([\s.$]{0,9}|\s*\\[\])]\s*)$"
 )
 _UNIT = re.compile(r"(?<=[\w)\]}'′″])[ \t]{1,9}\[([^\[\]]{1,40})\][\s.]{0,9}$")
 _LONGEST = 160
@@ -90,14 +90,13 @@ def _without_number_before(text: str, scope: Scope) -> str:
     if found is None:
         return text
     name, lead = found["name"] or found["point"], found["lead"]
-    if found["point"] and re.search(
-        r"\d\.(?!\d)", text[found.end() :]
-    ):  # 2. m x'' + 2. k x, as programs print numbers
+    rest = text[found.end() :]
+    if found["point"] and re.search(r"\d\.(?!\d)", rest):  # 2. m x'' + 2. k x, as programs print numbers
         return text
     if not re.search(_WIDE, found["gap"]) and _may_be_a_factor(name, scope):
         shown = text[found.end("lead") : found.start("gap")]
         raise _asked(text, found.end("lead") + 1, shown, f"{shown}*")
-    return f"{lead}{' ' * (found.end() - len(lead))}{text[found.end() :]}"
+    return f"{lead}{' ' * (found.end() - len(lead))}{rest}"
 
 
 def _without_numbers_behind(text: str, scope: Scope) -> str:

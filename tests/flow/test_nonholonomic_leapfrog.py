@@ -497,6 +497,16 @@ def test_models_of_sympy_and_functions_made_of_pieces():
     held = ConstrainedLagrangian(ramp, holonomic=[y - x])
     slid = propagate(held, (0, 0.5), [1, 1, 0, 0], method=Rattle(4), step=0.01)
     assert abs(slid["x"] - (2 - np.cos(slid.t))).max() < 1e-9
+    rod = me.LagrangesMethod(
+        (a.diff() ** 2 + b.diff() ** 2) / 2 - 9 * b, [a, b], hol_coneqs=[a**2 + b**2 - 1]
+    )
+    rod.form_lagranges_equations()
+    own = ConstrainedLagrangian(
+        Lagrangian((x.dot**2 + y.dot**2) / 2 - 9 * y, [x, y]), holonomic=[x**2 + y**2 - 1]
+    )
+    swung, same = (propagate(s, (0, 0.5), [1, 0, 0, 0], method=Rattle(4), step=0.01) for s in (rod, own))
+    assert abs(swung.y - same.y).max() < 1e-14
+    assert swung.final[1] < -0.5
 
 
 # trouble ---------------------------------------------------------------------------------------------

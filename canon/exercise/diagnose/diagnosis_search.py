@@ -48,7 +48,9 @@ def diagnosis(finding: Finding, seconds: float = OUTER_SECONDS) -> Diagnosis | N
     BudgetSpent
         Where the seconds are over before the search came to its own end.
     """
-    if not isinstance(finding.question, Chain):  # whatever the answer was said to be equal to
+    if not isinstance(
+        finding.question, Chain
+    ):  # the answer itself is wrong: its chain is not repaired with it
         finding = replace(finding, reading=replace(finding.reading, links=()))
     found = _told(finding, Effort(seconds))
     return _with_dimensions(found, finding) if finding.reading.has("dimensions") else found

@@ -165,13 +165,8 @@ def _place_of_an_angle(leaves: Expr, force: Expr, q: Sequence[Symbol]) -> Expr |
         waves = [f for f in force.atoms(sp.sin, sp.cos) if f.has(x)]
         inside = force.xreplace({f: sp.Dummy() for f in waves})
         whole = not inside.has(x) and all(cast("Expr", f.args[0]).diff(x).is_integer for f in waves)
-        if (
-            is_angle(x.name)
-            and not c.has(*q)
-            and waves
-            and whole
-            and sp.expand(force - substitute(force, {x: -x})) == 0
-        ):
+        even = is_angle(x.name) and sp.expand(force - substitute(force, {x: -x})) == 0
+        if even and whole and waves and not c.has(*q):
             return sp.cos(x) - sp.cos(c)
     return None
 

@@ -21,7 +21,6 @@ from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.kinds import kind_of
 from canon.exercise.sheet.left_sides import (
     OTHER_SPELLINGS,
-    Label,
     Quantity,
     components_asked,
     has_primes,
@@ -29,8 +28,8 @@ from canon.exercise.sheet.left_sides import (
     is_of_another,
     label_of,
 )
-from canon.exercise.sheet.quantities.abbreviations import without_abbreviations
 from canon.exercise.sheet.typed_values import signed_tables, values_under
+from canon.exercise.sheet.written_answers import WrittenAnswers
 from canon.expression.parse import LanguageError, parse_expression
 from canon.expression.text.declared_names import key_of
 from canon.expression.text.vocabulary import CONSTANTS, OTHER_NAMES
@@ -48,10 +47,6 @@ __all__ = ["Link", "TypedAnswers", "typed_answers"]
 
 _EQUATIONS = ("claim", "constraints", "restrict", "equations", "implicit", "leaves", "integrals", "boundary")
 _UNTOUCHED = ("domain", "class")
-_UP_TO_A_CONSTANT = ("F", "S", "W")
-"""Generating functions, gauges and complete integrals."""
-_EXPANSIONS = {"small", "degree"}
-"""Keys of kinds whose answers are right to an order."""
 
 
 class Link(NamedTuple):
@@ -126,7 +121,8 @@ class _Plain:
         if key in _UNTOUCHED:
             return value
         if key in self.kind.answer:
-            value = self.answer(key, value)
+            written = WrittenAnswers(self.kind, self.sides, is_list_of_equations=self.has_equations(key))
+            value = written.answer(key, value, self.quantity(key))
         if key in self.kind.several:
             return self.several(key, value)
         match self.kind.shapes.get(key):
@@ -152,69 +148,6 @@ class _Plain:
                 return [self.bracket(f"{key}[{i}]", pair) for i, pair in enumerate(_tables(value))]
             case _:
                 return value
-
-    def answer(self, key: str, value: Any) -> Any:
-        """Return an answer without remainders, where those are understood, and with what it abbreviates put in."""
-        if _EXPANSIONS & self.kind.shapes.keys() and not self.scope.declares("O"):
-            value = self.without_remainders(key, value)
-        if key in _UP_TO_A_CONSTANT and isinstance(value, str):
-            function, name = field_texts.without_constant(value)
-            if name and not self.scope.declares(name):
-                self.found.passed.append(f"+ {name} in {key} is passed over: {key} is meant up to a constant")
-                value = function
-        return value if key in self.kind.several else self.written_out(key, value)
-
-    def written_out(self, key: str, value: Any) -> Any:
-        """Return an answer with what it abbreviates put in."""
-        shape = self.kind.shapes.get(key)
-        if shape is Shape.EXPRESSIONS and isinstance(value, Mapping):
-            return {
-                name: self.put_in(key, text, (Quantity(name, ((name, 0),)),)) for name, text in value.items()
-            }
-        if shape not in (Shape.TEXT, Shape.TEXTS):
-            return value
-        names = components_asked(key, self.of.keys, self.scope) if shape is Shape.TEXTS else ()
-        return self.put_in(key, value, (self.quantity(key), *names))
-
-    def put_in(self, key: str, value: Any, asked: Sequence[Quantity]) -> Any:
-        """Return texts with what they abbreviate put in; what is asked for is no abbreviation."""
-        texts: list[Any] = value if isinstance(value, list) else [value]
-        if not all(type(text) is str for text in texts):
-            return value
-
-        alone = key in ("I", "conserved", "not_conserved")  # any name may stand before such an answer
-
-        def is_asked_for(label: Label) -> bool:
-            named = alone and label in self.first_names(key, texts)
-            return named or any(is_asked(label, each, self.scope) for each in asked)
-
-        try:
-            found = without_abbreviations(texts, self.scope, is_asked_for)
-        except LanguageError:  # it is told where the answer is read
-            return value
-        if found is None or (found.unused and "multipliers" in self.of.keys):  # T = 17 m1 may be meant as one
-            return value
-        if len(found.texts) > 1 and not isinstance(value, list) and not self.has_equations(key):
-            return value  # more than one expression, which is told
-        self.found.passed += [
-            f"{said} in {key} is passed over: the name is not declared, and nothing here uses it"
-            for said in found.unused
-        ]
-        return found.texts if isinstance(value, list) or len(found.texts) > 1 else found.texts[0]
-
-    def first_names(self, key: str, texts: Sequence[str]) -> list[Label | None]:
-        """Return what stands before the first sign of each text."""
-        said = [next(iter(self.sides.statements(key, text)), None) for text in texts]
-        return [label_of(each.sides[0].said) for each in said if each is not None]
-
-    def without_remainders(self, key: str, value: Any) -> Any:
-        """Return expansions without ``+ O(x^5)`` and ``+ …``, which is told."""
-        if isinstance(value, list):
-            return [self.without_remainders(key, text) for text in value]
-        text, remainder = field_texts.without_remainder(value) if isinstance(value, str) else (value, "")
-        if remainder:
-            self.found.passed.append(f"the remainder {remainder} in {key} is passed over")
-        return text
 
     def several(self, key: str, value: Any) -> list[Any]:
         """Return values one by one, each with the unit behind it kept apart."""

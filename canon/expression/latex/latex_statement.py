@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from canon.expression.latex.latex_layout import CASES, PART, ROW, without_layout
-from canon.expression.text.statement import NAMED, Side, Statement, opened, unwrapped
+from canon.expression.text.statement import NAME_BEFORE_SIGN, Side, Statement, opened, unwrapped
 from canon.expression.text.tokens import LanguageError
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ _ENDS = re.compile(rf"(?:[\s.,;~]|\\[,;:! ]|\\q?quad(?![A-Za-z])|\\\\|{_JOINING}
 _BEGINS = re.compile(rf"(?:[\s~]|\\[,;:! ]|\\q?quad(?![A-Za-z])|{_JOINING}|(?:and|where|with)(?=[\s,:]))*")
 
 
-_DEFINES = re.compile(rf"(?:[\s~]|\\[,;:! ]|\\q?quad(?![A-Za-z])|{_BETWEEN})*{NAMED}(?:=|\\equiv)")
+_DEFINES = re.compile(rf"(?:[\s~]|\\[,;:! ]|\\q?quad(?![A-Za-z])|{_BETWEEN})*{NAME_BEFORE_SIGN}(?:=|\\equiv)")
 
 
 @dataclass(frozen=True, slots=True)

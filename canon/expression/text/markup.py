@@ -45,11 +45,10 @@ _PROMPT = re.compile(
     r"|^\s*(?:(?:\d{1,2}|[a-h]|i{1,3})\))[ \t]{1,9}(?=\S)|^\s*\*[ \t]{1,9}(?=\S[^\n]{0,400}=)"
 )
 """What programs and people write before a line: prompts, names of what follows, numbers and points of a list."""
-_SAID_BEFORE = re.compile(r"^\s*(?:(?:=>|⇒|⟹|∴|→|•|▪)\s{0,9}(?=\S)){1,9}")
 _SAID_BEHIND = re.compile(
     r"[\s.,;]{0,9}(?:✓|✔|∎|□|■|\\(?:checkmark|qed|blacksquare)\b|\\(?:text|mathrm)\{\s*(?:q\.e\.d\.|QED)\s*\}|\bQED\b|q\.\s?e\.\s?d\.?)[\s.]*$"
 )
-"""Words and signs around a formula that say nothing of it."""
+"""Signs behind a formula that say nothing of it."""
 _APART_ACCENT = re.compile(r"(?<=[^\W\d]) ([\u0307\u0308])")
 """A dot that Word's linear format sets apart from its letter."""
 _EMPHASISED = re.compile(r"^(\s*)(?:\*\*|__|[*_])([A-Za-z]\w{0,9})(?:\*\*|__|[*_])(\s*=)")
@@ -89,7 +88,7 @@ def unmarked(text: str) -> str:
     """
     if len(text) > MAX_CHARACTERS:
         return text
-    text = _SAID_BEHIND.sub(_blank, _SAID_BEFORE.sub(_blank, text))
+    text = _SAID_BEHIND.sub(_blank, text)
     text = _APART_ACCENT.sub(r"\1 ", text.replace("〖", "(").replace("〗", ")"))
     text = _ASSIGNED.sub(r"\1=", _PROMPT.sub(_blank, text))
     if "\n" not in text.strip():

@@ -14,7 +14,7 @@ from itertools import pairwise
 
 from canon.expression.text.tokens import LanguageError
 
-__all__ = ["NAMED", "Side", "Statement", "opened", "plain_statements", "unwrapped"]
+__all__ = ["NAME_BEFORE_SIGN", "Side", "Statement", "opened", "plain_statements", "unwrapped"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,10 +52,12 @@ _EQUALS = re.compile(r"(?<![<>!:=≠])(?:==|:=|=|≡|≔)(?![=>])")
 _ENDS = re.compile(r"[;\n]|⇒|⟹|∴|=>|(?<=\s)(?:and|where|with|mit|wobei|avec|où|donde)(?=\s)")
 MAX_SIDES = 100
 """Most sides in one field."""
-NAMED = r"(?:(?:where|with)\s)?\s*\\?[^\W\d]\w{0,11}(?:_\{\w{1,9}\})?\s*(?:\^2|\^\{2\}|\*\*2|²)?\s*"
+NAME_BEFORE_SIGN = (
+    r"(?:(?:where|with)\s)?\s*\\?[^\W\d]\w{0,11}(?:_\{\w{1,9}\})?\s*(?:\^2|\^\{2\}|\*\*2|²)?\s*"
+)
 """A name before ``=``, or its square."""
 _LONGEST_DEFINITION = 150
-_IN_BRACKETS = re.compile(rf"\s\({NAMED}=[^=]{{1,90}}\)[\s.]*$")
+_IN_BRACKETS = re.compile(rf"\s\({NAME_BEFORE_SIGN}=[^=]{{1,90}}\)[\s.]*$")
 
 
 def plain_statements(text: str) -> tuple[Statement, ...]:
@@ -179,7 +181,7 @@ def _definition_behind(text: str, depths: list[int], start: int, sign: int) -> i
     apart = (
         bool(commas)
         and text[start : commas[-1]].strip() != ""
-        and re.fullmatch(NAMED, text[commas[-1] + 1 : sign].lstrip())
+        and re.fullmatch(NAME_BEFORE_SIGN, text[commas[-1] + 1 : sign].lstrip())
     )
     return commas[-1] + 1 if apart else 0
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from canon.expression.parse import LanguageError
-
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -20,10 +18,7 @@ _END = re.compile(r"[;\n]")
 def without_numbers(texts: Sequence[str]) -> list[str]:
     """Return equations with their numbers blanked, where each has one and they count up.
 
-    Raises
-    ------
-    LanguageError
-        A single number may be a factor as well; its text is that of the error.
+    Of a single number :mod:`canon.expression.remarks` tells whether it may be a factor as well.
 
     Examples
     --------
@@ -39,20 +34,7 @@ def without_numbers(texts: Sequence[str]) -> list[str]:
         numbers = [int(found["a"] or found.groupdict().get("b") or 0) for found in places if found]
         if len(places) == len(numbers) > 1 and numbers == [numbers[0] + i for i in range(len(numbers))]:
             return [_blanked(pattern, text) for text in texts]
-    for text in texts:
-        _refuse_a_single_number(text)
     return list(texts)
-
-
-def _refuse_a_single_number(text: str) -> None:
-    for found in (_BEFORE.match(text), _BEHIND.search(text)):
-        if found is None or not found["a"] or int(found["a"]) < 2:
-            continue
-        if not text[: found.start()].rstrip().endswith("= 0"):
-            label = found["label"]
-            reason = f"{label} may be a factor, or the number of the equation"
-            remedy = f"write {label}* for a factor, or leave it out"
-            raise LanguageError(text, found.start("label") + 1, reason, remedy)
 
 
 def _labels(pattern: re.Pattern[str], text: str) -> list[re.Match[str] | None]:

@@ -15,7 +15,6 @@ from canon.exercise.sheet.equations.equation_numbers import without_numbers
 from canon.exercise.sheet.equations.matrix_products import equations_of_products
 from canon.exercise.sheet.equations.vector_equations import vector_equations
 from canon.exercise.sheet.left_sides import is_definition
-from canon.expression.parse import LanguageError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -43,7 +42,8 @@ def typed_equations(place: str, value: Any, known: Sides) -> list[Any]:
     Exception
         What ``known.fault`` makes, of a text that says nothing or can't be taken apart.
     """
-    texts: list[Any] = _unnumbered(place, value if isinstance(value, list) else [value], known)
+    texts: list[Any] = value if isinstance(value, list) else [value]
+    texts = without_numbers(texts) if all(type(text) is str for text in texts) else texts
     if len(texts) == 1 and isinstance(texts[0], str):
         text = texts[0]
         texts = vector_equations(text) or field_texts.equations_listed(text) or _products(place, text, known)
@@ -91,16 +91,6 @@ def _is_plain(statements: Sequence[Statement], known: Sides) -> bool:
 def _products(place: str, text: str, known: Sides) -> list[str]:
     """Return the equations of the components where the sides are sums and products of matrices."""
     return equations_of_products(text, known.reads(place, text)) or [text]
-
-
-def _unnumbered(place: str, texts: list[Any], known: Sides) -> list[Any]:
-    """Return equations without the numbers before or behind them."""
-    if not all(type(text) is str for text in texts):
-        return texts
-    try:
-        return without_numbers(texts)
-    except LanguageError as error:
-        raise known.fault(f"{place}[{texts.index(error.text)}]", error) from None
 
 
 def _chain(place: str, statement: Statement, known: Sides) -> list[str] | _Refused:

@@ -136,7 +136,7 @@ def _filled(read: Expr, put: Mapping[Symbol, Expr | None]) -> Expr | None:
 
 @dataclass(frozen=True)
 class _Definition:
-    """A name that an answer defines: a number or a length of time, or what moves, whose rates follow."""
+    """A name that an answer defines, and its value; what moves has rates as well."""
 
     name: str
     said: Statement
@@ -241,11 +241,8 @@ def _by_its_rate(rate: Symbol, statement: Statement, scope: Scope) -> _Definitio
             continue
         factor = value.diff(symbol)
         if factor != 0 and factor.free_symbols <= {*scope.names.values()} and value.subs(symbol, 0) == 0:
-            return (
-                None
-                if _moves_in(factor, scope)
-                else _Definition(word, statement, rate / factor, moves=True, by_rate=True)
-            )
+            found = _Definition(word, statement, rate / factor, moves=True, by_rate=True)
+            return None if _moves_in(factor, scope) else found
     return None
 
 
@@ -263,23 +260,20 @@ def _with(statement: Statement, scope: Scope, put: Mapping[Symbol, Expr | None])
 def _is_used(definition: _Definition, statements: Sequence[Statement], scope: Scope) -> bool:
     """Tell whether a name, or a rate of it, stands in one of the statements."""
     symbols = definition.values(scope).keys()
-    return any(
-        not symbols.isdisjoint(_read(side, scope).free_symbols) for each in statements for side in each.sides
-    )
+    read = (_read(side, scope) for each in statements for side in each.sides)
+    return any(value is not None and not symbols.isdisjoint(value.free_symbols) for value in read)
 
 
-def _read(side: Side, scope: Scope) -> Expr:
-    """Return what a side says; nothing where it can't be read."""
+def _read(side: Side, scope: Scope) -> Expr | None:
+    """Return what a side says; None where it can't be read."""
     try:
         return parse_expression(_WHERE.sub(r"\1", side.text), scope)
     except LanguageError:
-        return sp.S.Zero
+        return None
 
 
 def _plain(side: Side, scope: Scope, put: Mapping[Symbol, Expr | None]) -> str | None:
-    try:
-        read = parse_expression(_WHERE.sub(r"\1", side.text), scope)
-    except LanguageError:
-        return None
-    filled = _filled(read, put)
+    """Return a side with values in place of names."""
+    read = _read(side, scope)
+    filled = None if read is None else _filled(read, put)
     return None if filled is None else str(filled)
