@@ -427,7 +427,9 @@ def of_planets() -> None:
     start, span = scene.start("1994"), (0.0, steps * step)
     y0 = [*start.q, *start.p]
     print(f"\nplanets: the outer solar system, {steps} steps of {step:g} days")
-    print("canon: whole calls, 100 samples; REBOUND: its integration alone, in safe mode where MEGNO asks for it")
+    print(
+        "canon: whole calls, 100 samples; REBOUND: its integration alone, in safe mode where MEGNO asks for it"
+    )
     print(f"{'':44}{'µs a step':>10}{'with MEGNO':>12}{'ratio':>7}{'MEGNO':>8}")
 
     def row(name: str, alone: float, beside: float, value: float) -> None:
