@@ -70,7 +70,7 @@ def do_pieces(part: str, name: str, first: int, into: Path) -> None:
 
 
 def run_row(part: str, row: Row) -> list[dict[str, Any]]:
-    """Return what became of each of a row's pieces."""
+    """Return what became of each of a row's pieces; of a row without its ordinary tools, of canon's alone."""
     done = list[dict[str, Any]]()
     tools = [tool for tool, _ in row.pieces]
     while len(done) < len(tools):
@@ -81,6 +81,7 @@ def run_row(part: str, row: Row) -> list[dict[str, Any]]:
 def _until_trouble(part: str, row: Row, first: int) -> list[dict[str, Any]]:
     """Run pieces in one process until all are done, one hangs or the process ends."""
     tools = [tool for tool, _ in row.pieces]
+    wanted = len(tools) - first
     with tempfile.TemporaryDirectory() as folder:
         into, noise = Path(folder, "pieces"), Path(folder, "noise")
         into.touch()
@@ -92,6 +93,8 @@ def _until_trouble(part: str, row: Row, first: int) -> list[dict[str, Any]]:
         seen, deadline, hung = 0, time.monotonic() + _START_UP, False
         while process.poll() is None:
             lines = into.read_text(encoding="utf-8").count("\n")
+            if lines > wanted:  # and one line of greeting
+                break
             if lines > seen:
                 seen, deadline = lines, time.monotonic() + row.limit
             if time.monotonic() > deadline:
@@ -101,8 +104,8 @@ def _until_trouble(part: str, row: Row, first: int) -> list[dict[str, Any]]:
         with contextlib.suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)
         process.wait()
-        found = [json.loads(line) for line in into.read_text(encoding="utf-8").splitlines()][1:]
-        if first + len(found) == len(tools):
+        found = [json.loads(line) for line in into.read_text(encoding="utf-8").splitlines()][1:][:wanted]
+        if len(found) == wanted:
             return found
         last = noise.read_text(encoding="utf-8", errors="replace").strip().splitlines()[-1:]
     said = (
