@@ -23,6 +23,7 @@ LONGEST = 300.0
 PATIENCE = 4
 """A test may have so many times as long while more wants to run than there are processors."""
 
+DOCUMENTATION = "test_the_documentation_builds_without_warnings_from_a_fresh_clone"
 
 LONG = frozenset(Path(__file__).with_name("long_tests.txt").read_text(encoding="utf-8").splitlines())
 """Tests that `.ci/weigh` found to take long: they are run with the slow ones."""
@@ -30,10 +31,14 @@ LONG = frozenset(Path(__file__).with_name("long_tests.txt").read_text(encoding="
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Mark the tests that take long as slow, before the marks are looked at."""
+    """Mark the tests that take long as slow, before the marks are looked at; the longest comes first.
+
+    Where several processes share the tests, none is left alone with it at the end.
+    """
     for item in items:
         if item.nodeid in LONG:
             item.add_marker(pytest.mark.slow)
+    items.sort(key=lambda item: item.name != DOCUMENTATION)
 
 
 def pytest_collection_finish():
