@@ -144,6 +144,7 @@ RETURNED = {
         "flow.equations.contact_regimes.ContactRegime",
         "flow.run.event.Crossing",
         "flow.geometry.flow_jacobian.FlowJacobian",
+        "flow.geometry.flow_series.FlowSeries",
         "flow.method.solvable_splitting.SolvableSplitting",
         "flow.run_record.Energies",
         "flow.run.samples.Statistics",

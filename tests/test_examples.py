@@ -41,6 +41,7 @@ RESULTS = {
     "measure/let_canon_choose": r"found [1-9].\de-1[0-9], wanted 1e-09",
     "measure/round_off_walks": r"(1.[7-9]\d|2.[0-3]\d) times \(a walk: 2\)",
     "measure/what_a_digit_costs": r"kahan-li-8  order [78].\d, should be 8",
+    "explore/a_cloud_of_starts": r"order 5: symplectic to \de-1[3-6], right to 1e-3 within 3e-03",
     "explore/a_ready_scene": r"energy off by at most \de-1[3-6]",
     "explore/a_study_of_steps": r"27 cases: 27 finished, 0 failed, 0 pending$",
     "explore/two_neighbours_part": r"exponent 0.\d\d/s: an error grows tenfold",

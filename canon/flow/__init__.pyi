@@ -31,6 +31,8 @@ from .geometry.flow_jacobian import FlowJacobian as FlowJacobian
 from .geometry.flow_jacobian import flow_jacobian as flow_jacobian
 from .geometry.flow_jacobian import reversal_error as reversal_error
 from .geometry.flow_jacobian import symplecticity_defect as symplecticity_defect
+from .geometry.flow_series import FlowSeries as FlowSeries
+from .geometry.flow_series import flow_series as flow_series
 from .geometry.numeric_evidence import Witness as Witness
 from .geometry.numeric_evidence import brackets_at_points as brackets_at_points
 from .geometry.numeric_evidence import integral_along_motion as integral_along_motion
