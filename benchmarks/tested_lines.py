@@ -1,0 +1,76 @@
+"""How much of each room its tests run: lines and branches, those of processes that tests start included.
+
+python benchmarks/tested_lines.py                    # the quick tests, in an order drawn at random (half an hour)
+python benchmarks/tested_lines.py -m slow            # what the slow ones run beside them (hours): both are counted
+python benchmarks/tested_lines.py --report           # nothing is run: the table of what was
+python benchmarks/tested_lines.py --report study     # and the lines of a folder that are not run
+
+Other arguments go to pytest. It takes ``pip install coverage pytest-random-order``. Processes that are killed tell
+nothing of what they ran.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import subprocess
+import sys
+from collections import defaultdict
+from pathlib import Path
+
+from coverage import Coverage
+from coverage.results import Numbers
+
+HERE = Path(__file__).resolve().parents[1]
+DATA = HERE / ".coverage_data" / "run"
+RULES = HERE / "benchmarks" / "tested_lines.toml"
+
+
+def run(arguments: list[str]) -> int:
+    """Run tests, add what they run to what is known, and return what pytest returns."""
+    DATA.parent.mkdir(exist_ok=True)
+    order = ["--random-order-bucket=global", f"--random-order-seed={random.randrange(10**6)}"]
+    print("pytest", *order, *arguments, file=sys.stderr)
+    done = subprocess.run(
+        [sys.executable, "-m", "coverage", "run", "--rcfile", str(RULES),
+         "-m", "pytest", "-q", "-n", "2", "-p", "no:cacheprovider", *order, *arguments],
+        cwd=HERE, env={**os.environ, "COVERAGE_FILE": str(DATA)}, stdout=sys.stderr, check=False,
+    )  # fmt: skip
+    known = Coverage(data_file=str(DATA), config_file=str(RULES))
+    known.combine([str(DATA.parent)], keep=False)
+    known.save()
+    return done.returncode
+
+
+def report(shown: str) -> None:
+    """Print lines and branches by room, then the modules that fall short; of a folder the lines that are not run."""
+    known = Coverage(data_file=str(DATA), config_file=str(RULES))
+    known.load()
+    rooms: defaultdict[str, Numbers] = defaultdict(Numbers)
+    short, missing = list[tuple[float, str]](), list[str]()
+    for path in sorted((HERE / "canon").rglob("*.py")):
+        found = known._analyze(str(path))  # noqa: SLF001, the public analysis2 has no branches
+        name = path.relative_to(HERE / "canon")
+        room = name.parts[0] if len(name.parts) > 1 else "canon"
+        rooms[room] += found.numbers
+        if found.numbers.pc_covered < 95:
+            short.append((found.numbers.pc_covered, name.as_posix()))
+        if shown and name.as_posix().startswith(shown):
+            missing.append(f"{name.as_posix()}: {found.missing_formatted(branches=True)}")
+    print(f"{'room':12}{'lines':>8}{'not run':>9}{'branches':>10}{'half run':>10}{'run':>9}")
+    for room, numbers in [*sorted(rooms.items()), ("all", sum(rooms.values(), Numbers()))]:
+        print(
+            f"{room:12}{numbers.n_statements:8}{numbers.n_missing:9}{numbers.n_branches:10}"
+            f"{numbers.n_partial_branches:10}{numbers.pc_covered:7.1f} %"
+        )
+    print(f"\n{len(short)} modules below 95 %")
+    for share, name in sorted(short):
+        print(f"{share:5.1f} %  {name}")
+    print("\n".join(missing))
+
+
+if __name__ == "__main__":
+    given = sys.argv[1:]
+    failed = 0 if "--report" in given else run(given)
+    report(given[-1] if given[:1] == ["--report"] and len(given) > 1 else "")
+    sys.exit(failed)
