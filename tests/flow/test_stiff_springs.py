@@ -1,5 +1,7 @@
 """Gauss methods by Newton's method: stiff springs with steps that the slow motion sets; elsewhere the same motion."""
 
+import itertools
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -45,6 +47,37 @@ def alternating_springs(k):
     stiff = sp.Integer(k) / 2 * sum(s**2 for s in stretches)
     start = [1.0, 0.0, 0.0, k**-0.5, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0]
     return Hamiltonian(sum(s**2 for s in p) / 2 + stiff + soft / 4, q, p), start
+
+
+def chain(sites, k, *, ring=False):
+    """Masses between walls, or in a ring, by quartic springs of which every other one is stiff too."""
+    q = coordinates(" ".join(f"x{i}" for i in range(sites)))
+    ends = [(q[-1], q[0])] if ring else [(0, q[0]), (q[-1], 0)]
+    stretches = [b - a for a, b in [*ends[:1], *itertools.pairwise(q), *ends[1:]]]
+    V = sum((k if i % 2 else 1) * s**2 / 2 + s**4 / 4 for i, s in enumerate(stretches))
+    pairs = np.repeat(0.2 * np.sin(np.arange((sites + 1) // 2)), 2)[:sites]  # stiff springs are not stretched
+    H = Hamiltonian(sum(s.momentum**2 for s in q) / 2 + V, q, [s.momentum for s in q])
+    return H, [*pairs, *np.zeros(sites)]
+
+
+@pytest.mark.parametrize(("sites", "ring"), [(24, False), (25, True)])
+def test_a_long_chain_moves_by_the_band_of_its_neighbours(sites, ring):
+    """The other iteration, which knows no matrix, solves the same equations where the springs are soft."""
+    soft, start = chain(sites, 2, ring=ring)
+    arguments = {"t_span": (0, 10), "y0": start, "step": 0.1, "samples": 5}
+    one, other = (propagate(soft, method=method, **arguments) for method in (newton(3), Gauss(3)))
+    assert abs(one.y - other.y).max() < 1e-14
+    assert abs(one.y[:, -1] - one.y[:, 0]).max() > 0.1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("k", [10**4, 10**10])
+def test_a_long_stiff_chain_keeps_its_energy(k):
+    system, start = chain(64, k)
+    motion = propagate(system, (0, 500), start, method=newton(3), step=0.05, samples=500)
+    error = abs(motion.energy_error)
+    assert error.max() < 1e-9
+    assert error[-100:].max() < 3 * error[1:101].max()
 
 
 @pytest.mark.parametrize("k", [10**4, pytest.param(10**8, marks=pytest.mark.slow), 10**10])

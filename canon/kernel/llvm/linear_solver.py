@@ -62,6 +62,16 @@ class LinearSolver:
     matrix: str
     pivots: str
 
+    @property
+    def length(self) -> int:
+        """Numbers of the matrix in memory."""
+        return self.size**2
+
+    @property
+    def right_length(self) -> int:
+        """Numbers of a right-hand side in memory."""
+        return self.size
+
     def row(self, i: str | int) -> str:
         """Return the address of a row."""
         w = self.w
@@ -75,7 +85,7 @@ class LinearSolver:
         w = self.w
         with w.loop(0, self.size) as k:
             own, after = self.row(k), w.let(f"add i64 {k}, 1")
-            self._exchange(k, own, after)
+            self.exchange(k, own, (after, self.size), (0, self.size))
             reciprocal = w.algebra("div", w.constant(Fraction(1)), w.load(own, k))
             with w.loop(after, self.size) as i:
                 row = self.row(i)
@@ -85,14 +95,16 @@ class LinearSolver:
                 with w.loop(after, self.size) as j:
                     w.store(w.multiply_add(back, w.load(own, j), w.load(row, j)), row, j)
 
-    def _exchange(self, k: str, own: str, after: str) -> None:
-        """Write the exchange of row k with that whose entry in column k is largest."""
+    def exchange(
+        self, k: str, own: str, rows: tuple[str, str | int], columns: tuple[str | int, str | int]
+    ) -> None:
+        """Write the exchange, in ``columns``, of row k with the one of ``rows`` whose entry in column k is largest."""
         w = self.w
         kind = "float" if w.number == SINGLE else "double"
         largest, place = w.reserve(kind), self._pivot(k)
         w.line(f"store {kind} {magnitude(w, w.load(own, k))}, ptr {largest}")
         w.line(f"store i64 {k}, ptr {place}")
-        with w.loop(after, self.size) as i:
+        with w.loop(*rows) as i:
             size, before = magnitude(w, w.load(self.row(i), k)), w.let(f"load {kind}, ptr {largest}")
             larger = w.let(f"fcmp ogt {kind} {size}, {before}")
             w.line(
@@ -101,19 +113,31 @@ class LinearSolver:
             held = w.let(f"load i64, ptr {place}")
             w.line(f"store i64 {w.let(f'select i1 {larger}, i64 {i}, i64 {held}')}, ptr {place}")
         other = self.row(w.let(f"load i64, ptr {place}"))
-        with w.loop(0, self.size) as j:
+        with w.loop(*columns) as j:
             a, b = w.load(own, j), w.load(other, j)
             w.store(b, own, j)
             w.store(a, other, j)
+
+    def exchange_right(self, k: str, right: str) -> None:
+        """Write the exchange of row k of a right-hand side."""
+        w = self.w
+        other = w.let(f"load i64, ptr {self._pivot(k)}")
+        a, b = w.load(right, k), w.load(right, other)
+        w.store(b, right, k)
+        w.store(a, right, other)
+
+    def divide_back(self, i: str, columns: tuple[str | int, str | int], right: str) -> None:
+        """Write the unknown of row i, from those of later ``columns``."""
+        w, row = self.w, self.row(i)
+        with w.loop(*columns) as j:
+            w.store(w.multiply_add(w.negative(w.load(row, j)), w.load(right, j), w.load(right, i)), right, i)
+        w.store(w.algebra("div", w.load(right, i), w.load(row, i)), right, i)
 
     def solve(self, right: str) -> None:
         """Write the solution over the right-hand side at an address."""
         w = self.w
         with w.loop(0, self.size) as k:
-            other = w.let(f"load i64, ptr {self._pivot(k)}")
-            a, b = w.load(right, k), w.load(right, other)
-            w.store(b, right, k)
-            w.store(a, right, other)
+            self.exchange_right(k, right)
         with w.loop(0, self.size) as i:
             row = self.row(i)
             with w.loop(0, i) as j:
@@ -122,12 +146,7 @@ class LinearSolver:
                 )
         with w.loop(0, self.size) as back:
             i = w.let(f"sub i64 {self.size - 1}, {back}")
-            row = self.row(i)
-            with w.loop(w.let(f"add i64 {i}, 1"), self.size) as j:
-                w.store(
-                    w.multiply_add(w.negative(w.load(row, j)), w.load(right, j), w.load(right, i)), right, i
-                )
-            w.store(w.algebra("div", w.load(right, i), w.load(row, i)), right, i)
+            self.divide_back(i, (w.let(f"add i64 {i}, 1"), self.size), right)
 
 
 def eliminated(w: Writer, matrix: list[list[str]], right: Sequence[str]) -> list[str]:

@@ -5,7 +5,8 @@ The stages solve L − F(L) = 0, F_i = h b_i f(Y_i). A change of L solves the 2n
 other directions in each, which one J for all, and the s/2 complex systems that it would lead to, do not know. The
 factors are kept once the changes are small (E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 2nd ed.,
 Springer 1996, § IV.8, doi:10.1007/978-3-642-05221-7). A change comes from the linear equations, never from F alone: the
-rounding of large forces does not get into L.
+rounding of large forces does not get into L. Where neighbours act on neighbours the equations form a band, of which
+nothing outside is touched.
 """
 
 from __future__ import annotations
@@ -13,8 +14,9 @@ from __future__ import annotations
 import contextlib
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
+from canon.kernel.llvm.band_solver import BandSolver, band_memory, band_order, pays
 from canon.kernel.llvm.lane_rows import store_row
 from canon.kernel.llvm.linear_solver import LinearSolver, large_array
 
@@ -50,16 +52,36 @@ def newton_stages(
     graph, state = system.graph, (*system.q, *system.p)
     slopes = [graph.gradient(rate, state) for rate in (*system.velocity, *system.force)]
     places = [(i, j) for i, row in enumerate(slopes) for j, slope in enumerate(row) if slope != graph.zero]
-    with large_array(w, equations**2) as matrix:
-        solver = LinearSolver(w, equations, matrix, w.reserve(f"[{equations} x i64], align 64"))
+    order, reach = band_order(places, len(state))
+    reach = (reach + 1) * len(mu) - 1  # all stages of a variable beside each other
+    narrow = pays(equations, reach)
+    with large_array(w, band_memory(equations, reach) if narrow else equations**2) as matrix:
+        pivots = w.reserve(f"[{equations} x i64], align 64")
+        if narrow:
+            solver = BandSolver(w, equations, matrix, pivots, reach)
+            unknowns = Unknowns([len(mu) * place for place in order], 1)
+        else:
+            solver = LinearSolver(w, equations, matrix, pivots)
+            unknowns = Unknowns(list(range(len(state))), len(state))
         lanes = v.number.lanes
         shares = w.array(len(mu) * lanes)
         for j, column in enumerate(mu):
             store_row(w, v, v.negative(v.algebra("mul", weight, column)), shares, str(j))
         yield NewtonStages(
-            w, v, system, len(mu), [slopes[i][j] for i, j in places], places, solver, shares,
-            w.array(len(places) * lanes), w.array(equations), w.array(1), w.reserve("i64"),
+            w, v, system, len(mu), [slopes[i][j] for i, j in places], places, solver, unknowns, shares,
+            w.array(len(places) * lanes), w.array(solver.right_length), w.array(1), w.reserve("i64"),
         )  # fmt: skip
+
+
+class Unknowns(NamedTuple):
+    """Where the changes of a variable stand: that of the first stage, and how far the next ones are apart."""
+
+    first: Sequence[int]
+    apart: int
+
+    def place(self, stage: int, variable: int) -> int:
+        """Return the place of a stage's change of a variable."""
+        return self.first[variable] + stage * self.apart
 
 
 @dataclass(frozen=True)
@@ -74,8 +96,8 @@ class NewtonStages:
         How many there are.
     slopes, places
         The nodes of the entries of J that are not zero, and where they stand.
-    solver
-        The linear equations.
+    solver, unknowns
+        The linear equations, and where their unknowns stand.
     shares
         Memory of −h b_i µ_ij.
     jacobian, right
@@ -93,16 +115,12 @@ class NewtonStages:
     slopes: Sequence[int]
     places: Sequence[tuple[int, int]]
     solver: LinearSolver
+    unknowns: Unknowns
     shares: str
     jacobian: str
     right: str
     least: str
     fresh: str
-
-    @property
-    def size(self) -> int:
-        """Numbers of a state."""
-        return 2 * len(self.system.q)
 
     def begin(self) -> None:
         """Write that J is to be taken anew."""
@@ -130,17 +148,19 @@ class NewtonStages:
             for k, slope in enumerate(found):
                 store_row(w, v, slope, self.jacobian, str(k))
             zero, one = w.constant(Fraction(0)), w.constant(Fraction(1))
-            with w.loop(0, self.solver.size**2) as i:
+            with w.loop(0, self.solver.length) as i:
                 w.store(zero, self.solver.matrix, i)
             with w.loop(0, self.solver.size) as i:
                 w.store(one, self.solver.row(i), i)
             with w.loop(0, len(self.places)) as k, w.loop(0, self.stages) as i:
-                row, column = (w.entry([place[side] for place in self.places], k) for side in (0, 1))
+                row, column = (
+                    w.entry([self.unknowns.first[place[side]] for place in self.places], k) for side in (0, 1)
+                )
                 slope = w.load(self.jacobian, self._index(k, lanes, i))
-                entries = self.solver.row(self._index(i, self.size, row))
+                entries = self.solver.row(self._index(i, self.unknowns.apart, row))
                 with w.loop(0, self.stages) as j:
                     share = w.load(self.shares, self._index(j, lanes, i))
-                    place = self._index(j, self.size, column)
+                    place = self._index(j, self.unknowns.apart, column)
                     w.store(w.multiply_add(share, slope, w.load(entries, place)), entries, place)
             self.solver.factorise()
 
@@ -150,15 +170,15 @@ class NewtonStages:
 
     def improved(self, old: Sequence[str], found: Sequence[str]) -> list[str]:
         """Return the stages L + δ after L, ``old``, gave F(L), ``found``."""
-        w, v, size = self.w, self.v, self.size
+        w, v = self.w, self.v
         for i, (before, new) in enumerate(zip(old, found, strict=True)):
             missing = v.algebra("sub", new, before)
             for stage in range(self.stages):
-                w.store(v.lane(missing, stage), self.right, stage * size + i)
+                w.store(v.lane(missing, stage), self.right, self.unknowns.place(stage, i))
         self.solver.solve(self.right)
         empty = [w.constant(Fraction(0))] * (v.number.lanes - self.stages)
         made: list[str] = []
         for i, before in enumerate(old):
-            change = [w.load(self.right, stage * size + i) for stage in range(self.stages)]
+            change = [w.load(self.right, self.unknowns.place(stage, i)) for stage in range(self.stages)]
             made.append(v.algebra("add", before, v.from_lanes([*change, *empty])))
         return made
