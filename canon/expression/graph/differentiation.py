@@ -1,4 +1,4 @@
-"""Derivatives on an expression graph: forward by one symbol, in reverse by many.
+"""Derivatives on an expression graph: forward by one symbol or along a direction, in reverse by many.
 
 Only what depends on the symbols is visited. The slope of a product by one of its factors is the product of the
 others; where many factors vary, products of heads and tails make all of them at linear cost.
@@ -12,13 +12,13 @@ from canon.expression.graph.algebra import add, mul, negative, power, raised
 from canon.expression.graph.elementary import SLOPES, function
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Sequence
+    from collections.abc import Collection, Iterator, Mapping, Sequence
 
     from sympy import Symbol
 
     from canon.expression.graph.arena import Arena
 
-__all__ = ["derivative", "gradient"]
+__all__ = ["derivative", "directional", "gradient"]
 
 _FEW = 2
 """Up to so many factors that vary the products of the others are formed one by one."""
@@ -26,10 +26,21 @@ _FEW = 2
 
 def derivative(arena: Arena, node: int, symbol: Symbol, known: dict[int, int]) -> int:
     """Return ∂node/∂symbol; ``known`` holds the derivatives by this symbol already found and takes up the new ones."""
-    wanted = arena.mask((symbol,))
+    known[arena.symbol(symbol)] = arena.one
+    return _forward(arena, node, arena.mask((symbol,)), known)
+
+
+def directional(arena: Arena, nodes: Sequence[int], along: Mapping[Symbol, int]) -> list[int]:
+    """Return Σ ∂node/∂s ds of nodes, ds being the node that ``along`` has for the symbol s: in one sweep."""
+    known = {arena.symbol(symbol): rate for symbol, rate in along.items()}
+    wanted = arena.mask(along)
+    return [_forward(arena, node, wanted, known) for node in nodes]
+
+
+def _forward(arena: Arena, node: int, wanted: int, known: dict[int, int]) -> int:
+    """Return the derivative of a node from those of the symbols; those of what it is made of are kept too."""
     if not arena.masks[node] & wanted:
         return arena.zero
-    known[arena.symbol(symbol)] = arena.one
     for each in _varying(arena, node, wanted, known):
         known[each] = add(
             arena,

@@ -113,6 +113,10 @@ class Graph(Arena):
         """
         return differentiation.derivative(self, node, symbol, self._derivatives.setdefault(symbol, {}))
 
+    def directional(self, nodes: Sequence[int], along: Mapping[Symbol, int]) -> list[int]:
+        """Return the rates of nodes whose symbols change at the given rates, themselves nodes (one forward sweep)."""
+        return differentiation.directional(self, nodes, along)
+
     def gradient(self, node: int, symbols: Sequence[Symbol]) -> tuple[int, ...]:
         """Return ∂node/∂symbol for many symbols at once (reverse sweep).
 

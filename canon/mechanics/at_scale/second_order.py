@@ -192,10 +192,11 @@ def derivation_of_lagrangian(lagrangian: Lagrangian) -> SecondOrderEquations:
     both = graph.gradient(graph.from_sympy(lagrangian.L), (*q, *v))
     momenta = both[len(q) :]
     M = [tuple(graph.derivative(p, w) for w in v[: i + 1]) for i, p in enumerate(momenta)]
+    along = {**{s: graph.symbol(w) for s, w in zip(q, v, strict=True)}, t: graph.one}
+    Q = [(graph.from_sympy(force),) for force in lagrangian.forces] or [()] * len(q)
     f: list[int] = []
-    for i, p in enumerate(momenta):
-        drift = [graph.mul((graph.derivative(p, s), graph.symbol(w))) for s, w in zip(q, v, strict=True)]
-        left = [graph.negative(term) for term in (*drift, graph.derivative(p, t))]
-        Q = [graph.from_sympy(lagrangian.forces[i])] if lagrangian.forces else []
-        f.append(graph.add((both[i], *Q, *left)))
+    for i, drift in enumerate(graph.directional(momenta, along)):  # what changes p at constant q̇
+        kind, operands, _ = graph.nodes[drift]
+        left = map(graph.negative, operands if kind == "add" else (drift,))
+        f.append(graph.add((both[i], *Q[i], *left)))
     return SecondOrderEquations(graph, q, tuple(M), tuple(f), t)
