@@ -22,18 +22,29 @@ _FOLDED_BITS = 4096
 _FLATTENED = 8
 """Sums and products longer than this stay one shared node when they are part of a longer one."""
 
+_NUMBER_AND_ONE = 2
+"""Operands of c·x, whose x may be a product of its own."""
+
+_REWRITTEN = frozenset({"number", "mul", "pow"})
+"""Bases whose powers may be written otherwise."""
+
 
 def add(arena: Arena, terms: Iterable[int]) -> int:
     """Return the sum of nodes, equal terms merged."""
-    constant, coefficients = 0, dict[int, Fraction | int]()
+    constant, coefficients, alone = 0, dict[int, Fraction | int](), dict[int, int]()
     for term in _flat(arena, "add", terms):
         factor, rest = factored(arena, term)
         if rest is None:
             constant += factor
+        elif rest in coefficients:
+            coefficients[rest] += factor
+            alone.pop(rest, None)
         else:
-            coefficients[rest] = coefficients.get(rest, 0) + factor
+            coefficients[rest] = factor
+            if factor == 1 or _has_one_number(arena, term):
+                alone[rest] = term  # as it stands: its number and its factors are not put together again
     operands = sorted(
-        rest if factor == 1 else scaled(arena, factor, rest)
+        alone[rest] if rest in alone else rest if factor == 1 else scaled(arena, factor, rest)
         for rest, factor in coefficients.items()
         if factor
     )
@@ -46,16 +57,26 @@ def add(arena: Arena, terms: Iterable[int]) -> int:
 
 def mul(arena: Arena, factors: Iterable[int]) -> int:
     """Return the product of nodes, powers of equal bases merged."""
-    constant, exponents = 1, dict[int, Fraction | int]()
+    constant: Fraction | int = 1
+    exponents, alone = dict[int, Fraction | int](), dict[int, int]()
     for factor in _flat(arena, "mul", factors):
         node = arena.nodes[factor]
         if node.kind == "number":
-            constant *= node.value
+            constant = node.value if constant == 1 else constant * node.value
             continue
         base, exponent = _powered(arena, factor)
-        exponents[base] = exponents.get(base, 0) + exponent
+        if base in exponents:
+            exponents[base] += exponent
+            alone.pop(base, None)
+        else:
+            exponents[base] = exponent
+            if base == factor or arena.nodes[base].kind not in _REWRITTEN:
+                alone[base] = factor  # as it stands: it is the power that would be made again
     operands: list[int] = []
     for base, exponent in exponents.items():
+        if base in alone:
+            operands.append(alone[base])
+            continue
         raised = base if exponent == 1 else power(arena, base, arena.number(exponent))
         if arena.nodes[raised].kind == "number":
             constant *= arena.nodes[raised].value
@@ -104,6 +125,12 @@ def factored(arena: Arena, node: int) -> tuple[Fraction | int, int | None]:
     if kind == "mul" and arena.nodes[operands[0]].kind == "number":
         return arena.nodes[operands[0]].value, _product(arena, 1, operands[1:])
     return 1, node
+
+
+def _has_one_number(arena: Arena, product: int) -> bool:
+    """Return whether c·x is a product of c and several factors: putting these together again gives the same node."""
+    operands = arena.nodes[product].operands
+    return len(operands) > _NUMBER_AND_ONE and arena.nodes[operands[1]].kind != "number"
 
 
 def _powered(arena: Arena, node: int) -> tuple[int, Fraction | int]:
