@@ -32,10 +32,13 @@ def least_real_part(above, below):
 
 @settings(max_examples=50, deadline=None)
 @example([1, 0, 0], [2, 1, 1])
+@example([1, 0], [-1, 0])
 @given(coefficients, coefficients)
 def test_positive_real_against_values_in_the_right_half_plane(above, below):
     s = sp.Symbol("s")
-    fault = is_positive_real_at(sp.Poly(above, s, domain="QQ"), sp.Poly(below, s, domain="QQ"))
+    pair = [sp.Poly(f, s, domain="QQ") for f in (above, below)]
+    fault = is_positive_real_at(*pair)
+    above, below = ([float(c) for c in f.quo(sp.gcd(*pair)).all_coeffs()] for f in pair)
     least = least_real_part(above, below)
     if fault is None:
         assert least > -1e-6
