@@ -115,9 +115,10 @@ class Builder:
 
     def name(self, node: syntax.Name) -> Expr:
         """Return the symbol or constant that a name means."""
-        symbol = self.scope.symbol(node.text + ("", "_dot", "_ddot")[min(node.primes, 2)])
+        name = node.text + ("", "_dot", "_ddot")[min(node.primes, 2)]
+        symbol = self.scope.symbol(name)
         if symbol is not None and node.primes < 3:
-            return symbol
+            return self.value(node, name, symbol)
         if node.primes:
             self.refuse(
                 node,
@@ -135,6 +136,13 @@ class Builder:
             self.refuse(node, f"{node.text} needs its argument in parentheses")
         return self.refuse(node, f"{node.text} is not declared", self.scope.near(node.text))
 
+    def value(self, node: syntax.Node, name: str, symbol: Symbol) -> Expr:
+        """Return a symbol, or what its name abbreviates."""
+        value = self.scope.values.get(name, symbol)
+        if value is None:
+            self.refuse(node, f"{name} has no meaning here", "write out what it stands for")
+        return value
+
     def call(self, node: syntax.Call) -> Expr:
         """Return the value of a function."""
         name = node.function
@@ -144,7 +152,7 @@ class Builder:
             if node.arguments == (
                 syntax.Name(self.scope.time.name, 0, _column(node.arguments)),
             ) and self.scope.moves(name):
-                return symbol
+                return self.value(node, name, symbol)
             self.refuse(
                 node, f"{name} is a declared symbol and can't be applied to anything", "write * for a product"
             )

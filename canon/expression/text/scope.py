@@ -16,6 +16,8 @@ from canon.expression.text.vocabulary import CONSTANTS, FUNCTIONS, LEGENDRES, OT
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from sympy import Expr
+
 __all__ = ["Scope", "split"]
 
 _MAX_TOLD = 20
@@ -47,6 +49,9 @@ class Scope:
         Names of what changes in time, besides coordinates and momenta.
     other_names
         What declared symbols are called besides; none of these names is declared.
+    values
+        What names and rates abbreviate, as they are written here: every operation acts on the value, ``∂V/∂x`` too.
+        None where a name has none.
 
     Examples
     --------
@@ -64,6 +69,7 @@ class Scope:
     implicit: bool = False
     moving: frozenset[str] = frozenset()
     other_names: Mapping[str, Symbol] = field(default_factory=lambda: MappingProxyType({}))
+    values: Mapping[str, Expr | None] = field(default_factory=lambda: MappingProxyType({}))
 
     def __hash__(self) -> int:
         return hash(
@@ -112,7 +118,14 @@ class Scope:
         """Return a scope in which a name is the variable of an integral: any real number, whatever it is outside."""
         if not name or name in self.functions:
             return self
-        return replace(self, names={**self.names, name: Symbol(name, real=True, positive=positive)})
+        outside = self.symbol(name)
+        values = {
+            each: None if value is not None and value.has(outside) else value
+            for each, value in self.values.items()
+            if each != name
+        }
+        variable = Symbol(name, real=True, positive=positive)
+        return replace(self, names={**self.names, name: variable}, values=values)
 
     def near(self, name: str, behind: str = "") -> str:
         """Return a remedy for an unknown name, before what stands behind it."""

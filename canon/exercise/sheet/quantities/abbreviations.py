@@ -7,32 +7,34 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, NamedTuple
 
 import sympy as sp
 
 from canon.exercise.sheet.left_sides import label_of
-from canon.expression.parse import LanguageError, parse_expression, statements_of
+from canon.expression.as_written import as_written
+from canon.expression.parse import LanguageError, parse_expression, statements_of, syntax_of
 from canon.expression.symbols.symbol import (
     Coordinate,
     Momentum,
     Rate,
-    acceleration,
     time_derivative,
     velocity,
 )
 from canon.expression.text.declared_names import key_of
 from canon.expression.text.scope import split
+from canon.expression.text.syntax import Call, Name, parts
 from canon.expression.text.vocabulary import CONSTANTS, OTHER_NAMES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Sequence
 
     from sympy import Basic, Expr, Symbol
 
     from canon.exercise.sheet.left_sides import Label
     from canon.expression.text.scope import Scope
     from canon.expression.text.statement import Side, Statement
+    from canon.expression.text.syntax import Node
 
 __all__ = ["Abbreviated", "without_abbreviations"]
 
@@ -71,7 +73,7 @@ def without_abbreviations(
     >>> x, (m, k) = coordinates("x"), parameters("m k")
     >>> scope = Scope({s.name: s for s in (x, m, k)})
     >>> without_abbreviations(["x'' + w^2 x = 0, w^2 = k/m, f = 3"], scope, lambda label: False)
-    Abbreviated(texts=['k*x/m + x_ddot = 0'], unused=['f = 3'])
+    Abbreviated(texts=['x*(sqrt(k/m))**2 + x_ddot = 0'], unused=['f = 3'])
     """
     if sum(map(len, texts)) > _LONGEST:
         return None
@@ -85,8 +87,7 @@ def without_abbreviations(
     ]
     if any(each.by_rate for each in unused):  # x' = c
         return None
-    put = _put_in(defined, scope)
-    made = [_with(statement, known, put) for statement in kept]
+    made = [_with(statement, known) for statement in kept]
     told = [" = ".join(side.text.strip().lstrip("$ ") for side in each.said.sides) for each in unused]
     return None if None in made else Abbreviated([text for text in made if text is not None], told)
 
@@ -105,9 +106,8 @@ def _apart(
         found = False
         for statement in sorted(kept, key=_names_no_constant):
             definition = _definition(statement, _with_names(scope, defined), is_asked)
-            value = None if definition is None else _filled(definition.value, _put_in(defined, scope))
-            if definition is not None and value is not None:
-                defined.append(replace(definition, value=value, moves=_moves_in(value, scope)))
+            if definition is not None:
+                defined.append(definition)
                 kept.remove(statement)
                 found = True
                 break
@@ -121,17 +121,10 @@ def _names_no_constant(statement: Statement) -> bool:
 
 
 def _with_names(scope: Scope, defined: Sequence[_Definition]) -> Scope:
-    return replace(scope, names={**scope.names, **{each.name: each.symbol for each in defined}})
-
-
-def _put_in(defined: Sequence[_Definition], scope: Scope) -> dict[Symbol, Expr | None]:
-    return {symbol: value for each in defined for symbol, value in each.values(scope).items()}
-
-
-def _filled(read: Expr, put: Mapping[Symbol, Expr | None]) -> Expr | None:
-    """Return an expression with values in place of names; None where one has no value."""
-    values = {symbol: value for symbol, value in put.items() if symbol in read.free_symbols}
-    return None if None in values.values() else cast("Expr", read.xreplace(values))
+    """Return a scope in which names mean what an answer defines them by."""
+    names = {**scope.names, **{each.name: each.symbol for each in defined}}
+    values = {name: value for each in defined for name, value in each.values(scope).items()}
+    return replace(scope, names=names, values=values)
 
 
 @dataclass(frozen=True)
@@ -152,14 +145,14 @@ class _Definition:
             return Coordinate(self.name, real=True)
         return sp.Symbol(self.name, positive=True) if self.is_root else sp.Symbol(self.name, real=True)
 
-    def values(self, scope: Scope) -> dict[Symbol, Expr | None]:
-        """Return its value, and its rates where they are; None for a rate that this question has no symbol of."""
-        found: dict[Symbol, Expr | None] = {self.symbol: self.value}
+    def values(self, scope: Scope) -> dict[str, Expr | None]:
+        """Return its value, and its rates where it moves; None for a rate that this question has no symbol of."""
+        found: dict[str, Expr | None] = {self.name: self.value}
         if self.moves:
             q = [symbol for symbol in scope.names.values() if isinstance(symbol, Coordinate)]
             first = _rate(self.value, q, scope)
-            found[velocity(self.symbol)] = first
-            found[acceleration(self.symbol)] = None if first is None else _rate(first, q, scope)
+            found[f"{self.name}_dot"] = first
+            found[f"{self.name}_ddot"] = None if first is None else _rate(first, q, scope)
         return found
 
 
@@ -217,11 +210,12 @@ def _new_name(said: str, scope: Scope, is_asked: Callable[[Label], bool]) -> str
     return "" if taken else label.name
 
 
-def _rate_alone(side: Side, scope: Scope) -> Symbol | None:
-    """Return the velocity that a side is, and nothing else."""
+def _rate_alone(side: Side, scope: Scope) -> Expr | None:
+    """Return the value of the velocity that a side is, and nothing else."""
     label = label_of(side.said)
-    symbol = scope.symbol(f"{label.name}_dot") if label and label.rates == 1 and not label.arguments else None
-    return symbol if isinstance(symbol, Rate) else None
+    name = f"{label.name}_dot" if label and label.rates == 1 and not label.arguments else ""
+    symbol = scope.symbol(name)
+    return scope.values.get(name, symbol) if isinstance(symbol, Rate) else None
 
 
 def _is_asked(side: Side, is_asked: Callable[[Label], bool]) -> bool:
@@ -229,7 +223,7 @@ def _is_asked(side: Side, is_asked: Callable[[Label], bool]) -> bool:
     return label is not None and is_asked(label)
 
 
-def _by_its_rate(rate: Symbol, statement: Statement, scope: Scope) -> _Definition | None:
+def _by_its_rate(rate: Expr, statement: Statement, scope: Scope) -> _Definition | None:
     """Return the name that ``x' = v`` or ``x' = p/m`` defines; None where it is not one name times something."""
     right = statement.sides[1]
     words = dict.fromkeys(re.findall(r"(?<!\\)\b[A-Za-z]\w{0,9}", right.text))
@@ -246,11 +240,11 @@ def _by_its_rate(rate: Symbol, statement: Statement, scope: Scope) -> _Definitio
     return None
 
 
-def _with(statement: Statement, scope: Scope, put: Mapping[Symbol, Expr | None]) -> str | None:
+def _with(statement: Statement, scope: Scope) -> str | None:
     """Return a statement with values in place of names; None where a side that holds one can't be read."""
     sides: list[str] = []
     for side in statement.sides:
-        plain = _plain(side, scope, put)
+        plain = _plain(side, scope)
         if plain is None and not label_of(side.said):
             return None
         sides.append(plain or side.text.strip())
@@ -259,21 +253,33 @@ def _with(statement: Statement, scope: Scope, put: Mapping[Symbol, Expr | None])
 
 def _is_used(definition: _Definition, statements: Sequence[Statement], scope: Scope) -> bool:
     """Tell whether a name, or a rate of it, stands in one of the statements."""
-    symbols = definition.values(scope).keys()
-    read = (_read(side, scope) for each in statements for side in each.sides)
-    return any(value is not None and not symbols.isdisjoint(value.free_symbols) for value in read)
+    names = {definition.name, f"{definition.name}_dot", f"{definition.name}_ddot"}
+    trees = (_tree(side, scope) for each in statements for side in each.sides)
+    return any(_named(part) in names for tree in trees if tree is not None for part in parts(tree))
 
 
-def _read(side: Side, scope: Scope) -> Expr | None:
-    """Return what a side says; None where it can't be read."""
+def _named(part: Node) -> str:
+    return part.function if isinstance(part, Call) else part.text if isinstance(part, Name) else ""
+
+
+def _tree(side: Side, scope: Scope) -> Node | None:
+    """Return how a side is read; None where it can't be."""
     try:
-        return parse_expression(_WHERE.sub(r"\1", side.text), scope)
+        return syntax_of(_WHERE.sub(r"\1", side.text), scope)
     except LanguageError:
         return None
 
 
-def _plain(side: Side, scope: Scope, put: Mapping[Symbol, Expr | None]) -> str | None:
-    """Return a side with values in place of names."""
-    read = _read(side, scope)
-    filled = None if read is None else _filled(read, put)
-    return None if filled is None else str(filled)
+def _plain(side: Side, scope: Scope) -> str | None:
+    """Return a side with values in place of names; what can't be read is None.
+
+    Nothing in it is cancelled, so that what has no value is found where the answer is read.
+    """
+    text = _WHERE.sub(r"\1", side.text)
+    bare = replace(scope, values={})
+    try:
+        value = parse_expression(text, scope)
+        written = str(as_written(text, scope))
+        return written if parse_expression(written, bare) == value else str(value)
+    except LanguageError:
+        return None
