@@ -148,6 +148,8 @@ def lagrangian_equivalence(reading: Reading) -> Iterator[Question]:
         reading.fault("relation", "write gauge or equations")
     elif reading.has("F"):
         F = reading.expression("F")
+        if F.has(*(acceleration(x) for x in q)):
+            reading.fault("F", "should depend on coordinates, velocities and time only")
         yield Same((Part("dF/dt", time_derivative(F, q, t), second - first),), reading.domain)
         yield is_continuous(F, (*q, t), reading.domain, "F")
     else:

@@ -28,6 +28,7 @@ from canon.mechanics.algebra.constraint_manifold import EmptyDomainError
 from canon.mechanics.algebra.linear import SingularMatrixError
 from canon.mechanics.algebra.substitution import exchanged
 from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict, all_hold
+from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -74,7 +75,8 @@ def parameters(reading: Reading, ask: Ask) -> Iterator[Question]:
         )
         return
     missing = [f for f in found[0] if not any(covers(c, f, inner.domain, deadline) for c in claimed)]
-    lost = next((f for f in missing if all(_certainly_beyond(f, c, inner, deadline) for c in claimed)), None)
+    missing = [f for f in missing if not _are_among(f, claimed, inner, deadline)]
+    lost = next((f for f in missing if _has_others(f, claimed, inner, deadline)), None)
     if lost is not None:
         why = f"{'a solution is missing' if claimed else 'there is a solution'}: {_written(lost)}"
         yield Stated(Verdict(Status.FAILS, "all values", "exact", feedback=why), all_of_them)
@@ -245,13 +247,26 @@ def _found(
     return [[family for family, verdict in zip(candidates, verdicts, strict=True) if verdict.holds]]
 
 
-def _certainly_beyond(family: Family, claimed: Family, inner: Reading, deadline: Deadline) -> bool:
-    """Whether a family certainly has points that are none of another one."""
-    for s, value in claimed.items():
-        part = Part(str(s), exchanged(value, family), family.get(s, s))
-        if decide(Differ(part, inner.domain, ""), deadline).holds:
-            return True
-    return False
+def _are_among(family: Family, claimed: Sequence[Family], inner: Reading, deadline: Deadline) -> bool:
+    """Whether every point of a family is one of several others, as ±a are of ±|a|."""
+    apart = _distance(family, claimed)
+    return len(claimed) > 1 and vanishes(apart, inner.domain, budget=deadline.left).holds
+
+
+def _has_others(family: Family, claimed: Sequence[Family], inner: Reading, deadline: Deadline) -> bool:
+    """Whether a family certainly has a point that is none of the others."""
+    part = Part("the values", _distance(family, claimed), sp.S.Zero)
+    return decide(Differ(part, inner.domain, ""), deadline).holds
+
+
+def _distance(family: Family, claimed: Sequence[Family]) -> Expr:
+    """Return what vanishes at the points of a family that are among those of others, and nowhere else."""
+    return sp.Mul(
+        *(
+            sp.Add(*((exchanged(value, family) - family.get(s, s)) ** 2 for s, value in each.items()))
+            for each in claimed
+        )
+    )
 
 
 def _told(found: Sequence[Family]) -> tuple[str, ...]:

@@ -16,7 +16,7 @@ from canon.exercise.judges.invariance import is_instead
 from canon.exercise.question.answer import stay_open
 from canon.exercise.question.continuous_answer import is_continuous
 from canon.exercise.question.question import Determines, Part, Question, Regular, Same, fails
-from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
+from canon.expression.symbols.symbol import Rate, acceleration, time_derivative, velocity
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.constraint_manifold import transported
 from canon.mechanics.algebra.linear import is_regular
@@ -49,7 +49,7 @@ def _of_functions(reading: Reading) -> Iterator[Question]:
     variables = tuple(x for x in state if x not in state.values())
     table = _table(reading, "solution", variables)
     for x, value in table.items():
-        if value.has(*_ordered(state)):
+        if value.has(*_ordered(state)) or value.atoms(Rate):
             reading.fault(f"solution.{x}", f"should depend on {t}, parameters and constants only")
     yield from motion_is_real(table, reading.domain)
     laws = _laws(reading)

@@ -25,6 +25,7 @@ from canon.expression.parse import (
     parse_equation,
     parse_expression,
 )
+from canon.expression.symbols.symbol import Rate
 from canon.expression.symbols.user_input import counted
 from canon.expression.text.units import units
 from canon.frozen_mapping import FrozenMapping
@@ -36,6 +37,7 @@ from canon.proof.rungs.ladder import is_empty
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
+    from sympy import Basic
     from sympy.logic.boolalg import Boolean
 
     from canon.exercise.sheet.typed_answers import Link
@@ -326,9 +328,26 @@ class Reading:
             return self.instead[key]
         try:
             said = parsed(parse, str(text), self.scope)
-            return substitute(said, self.at) if self.at else said
         except LanguageError as error:
             raise self.error(key, error) from error
+        if self._is_of_phase_space and key.partition("[")[0] not in _RATES_TOO:
+            self._refuse_rates(said, key)
+        return substitute(said, self.at) if self.at else said
+
+    @cached_property
+    def _is_of_phase_space(self) -> bool:
+        """Whether the claim is about functions of q, p and t: coordinates have momenta, and no L is given."""
+        return self.is_names("p") and not self.has("L")
+
+    def _refuse_rates(self, said: Basic, key: str) -> None:
+        """Refuse what holds velocities or accelerations, which would count as free constants."""
+        found = sorted(str(rate) for rate in said.atoms(Rate))
+        if found:
+            self.fault(key, f"should be a function of q, p and t; eliminate {', '.join(found)}")
+
+
+_RATES_TOO = ("domain", "q_dot", "p_dot")
+"""Keys under which velocities may stand in phase space: in Hamilton's equations they are told by the judge."""
 
 
 def _the_one(value: Any) -> Any:

@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from canon.expression.symbols.symbol import Coordinate
-from canon.expression.text.syntax import Call, Name, Node, Number, children
+from canon.expression.text.syntax import Call, Name, Node, Number, children, parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -166,7 +166,7 @@ def of_operator(reader: FactorParser) -> Token | None:
 
 
 def names_outside_functions(node: Node, scope: Scope) -> Iterator[Name]:
-    """Yield the names of a tree that do not stand in the argument of a declared function."""
+    """Yield the names of a tree that do not stand in the argument of a declared function of the time."""
     stack = [node]
     while stack:
         part = stack.pop()
@@ -174,5 +174,9 @@ def names_outside_functions(node: Node, scope: Scope) -> Iterator[Name]:
             yield part
         elif isinstance(part, Call) and part.function in ("Derivative", "diff", "D", PARTIAL):
             stack.append(part.arguments[0])
-        elif not (isinstance(part, Call) and part.function in scope.functions):
+        elif not (isinstance(part, Call) and part.function in scope.functions and _has_time(part, scope)):
             stack += children(part)
+
+
+def _has_time(call: Call, scope: Scope) -> bool:
+    return any(isinstance(part, Name) and part.text == scope.time.name for part in parts(call))

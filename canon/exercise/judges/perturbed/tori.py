@@ -20,7 +20,7 @@ from sympy.core.function import AppliedUndef
 
 from canon.exercise.judges.canonical import canonical_parts
 from canon.exercise.question.deadline import PROOF_SECONDS, Deadline
-from canon.exercise.question.question import Part, Question, Same, Stated
+from canon.exercise.question.question import Part, Question, Same, Stated, wrong_variables
 from canon.expression.symbols.user_input import counted
 from canon.frozen_mapping import FrozenMapping
 from canon.mechanics.algebra.constraint_manifold import transported
@@ -186,6 +186,8 @@ def _map_to_actions(reading: Reading, H: Hamiltonian) -> Iterator[Question]:
         reading.fault("transformation", f"should say what {', '.join(new)} are, or what {', '.join(old)} are")
     if any(f.has(*written.values()) for f in images):
         reading.fault("transformation", "the variables on the left can't occur in the expressions")
+    for name, f in table.items():
+        yield from wrong_variables(f, (reading.time,), name, "the other variables alone, as H is")
     domain = transported(reading.domain, seen) if seen else reading.domain
     yield Same(canonical_parts(images[:n], images[n:], q, p), domain)
     tori = _tori(H, reading)

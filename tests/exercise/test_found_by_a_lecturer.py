@@ -1,0 +1,137 @@
+"""What a lecturer's 3,762 claims found: rates are no constants of phase space, and values may be told by others."""
+
+import pytest
+
+from canon.exercise.explained_judgement import judgements
+from canon.exercise.sheet.sheet import claim_from
+
+PHASE = {"q": ["q"], "p": ["p"]}
+NEW = {**PHASE, "new_q": ["Q"], "new_p": ["P"]}
+IDENTITY = {"Q": ["q"], "P": ["p"]}
+
+
+def judged(keys):
+    claim = claim_from({"id": "a", **keys})
+    assert not claim.errors
+    return [judgement for judgement, _ in judgements(claim)][-1]
+
+
+@pytest.mark.parametrize(
+    ("question", "right", "wrong"),
+    [
+        ({"kind": "canonicity", **PHASE}, {"Q": ["q"], "P": ["p + q"]}, {"Q": ["q"], "P": ["p + q_dot"]}),
+        (
+            {"kind": "canonicity", **PHASE},
+            {"Q": ["2*q"], "P": ["p"], "valence": "2"},
+            {"Q": ["q*q_dot"], "P": ["p"], "valence": "q_dot"},
+        ),
+        (
+            {"kind": "canonicity", **NEW},
+            {"implicit": ["Q = q + p", "P = p"]},
+            {"implicit": ["Q = q + q_dot", "P = p"]},
+        ),
+        (
+            {"kind": "canonicity-time-dependent", **PHASE},
+            {"Q": ["q - p*t"], "P": ["p"]},
+            {"Q": ["q"], "P": ["p - q_ddot"]},
+        ),
+        (
+            {"kind": "bilinear-covariant", **PHASE},
+            {"Q": ["q"], "P": ["p + q"], "factor": "1"},
+            {"Q": ["q"], "P": ["p + q_dot"], "factor": "1"},
+        ),
+        ({"kind": "generating-F2", **NEW, "map": IDENTITY}, {"F": "q*P"}, {"F": "q*P + q_dot*t"}),
+        (
+            {"kind": "transformed-hamiltonian-K", **NEW, "H": "p**2/2", "map": IDENTITY},
+            {"K": "P**2/2"},
+            {"K": "P**2/2 + q_dot"},
+        ),
+        (
+            {"kind": "hamilton-equations", **PHASE, "H": "p**2/2 + q**2/2"},
+            {"solution": {"q": "sin(t)", "p": "cos(t)"}},
+            {"solution": {"q": "q_dot*sin(t)", "p": "q_dot*cos(t)"}},
+        ),
+        (
+            {"kind": "lie-series", **PHASE, "f": "q", "W": "p", "small": "eps", "order": 1},
+            {"claim": "q + eps"},
+            {"claim": "q + eps + q_dot - q_dot"},
+        ),
+        (
+            {"kind": "solution", "q": ["x"], "equations": ["x_ddot + x = 0"]},
+            {"solution": {"x": "sin(t)"}},
+            {"solution": {"x": "x_ddot*sin(t)"}},
+        ),
+        (
+            {"kind": "lagrangian-equivalence", "q": ["x"], "L1": "x_dot**2/2", "L2": "x_dot**2/2 + x*x_dot",
+             "relation": "gauge"},
+            {"F": "x**2/2"},
+            {"F": "x**2/2 + x_ddot"},
+        ),
+    ],
+)  # fmt: skip
+def test_rates_are_no_constants(question: dict, right: dict, wrong: dict) -> None:
+    parameters = {"parameters": {"eps": "real"}} if "small" in question else {}
+    assert judged({**question, **parameters, **right}).status == "holds"
+    found = judged({**question, **parameters, **wrong})
+    if question["kind"] == "lie-series":  # nothing of the rate is left
+        assert found.status in ("holds", "invalid")
+    else:
+        assert found.status == "invalid"
+
+
+def test_velocities_in_hamiltons_equations_are_wrong_and_may_stand_on_the_left() -> None:
+    question = {"kind": "hamilton-equations", **PHASE, "H": "p**2/2 + q**2/2"}
+    assert judged({**question, "q_dot": ["q' = p"], "p_dot": ["dp/dt = -q"]}).status == "holds"
+    assert judged({**question, "q_dot": ["q_dot"], "p_dot": ["-q"]}).status == "fails"
+
+
+@pytest.mark.parametrize("angle", ["atan2(q,p) - t", "atan2(q,p) + t"])
+def test_an_angle_that_holds_the_time_is_no_angle_of_the_motion(angle: str) -> None:
+    question = {"kind": "action-angle", **PHASE, "H": "p**2/2 + q**2/2", "new_q": ["th"], "new_p": ["J"]}
+    action = "(p**2 + q**2)/2"
+    assert judged({**question, "transformation": {"th": "atan2(q,p)", "J": action}}).status == "holds"
+    assert judged({**question, "transformation": {"th": angle, "J": action}}).status == "fails"
+    assert (
+        judged({**question, "transformation": {"th": "atan2(q,p)", "J": f"{action} + t"}}).status == "fails"
+    )
+
+
+@pytest.mark.parametrize("rate", ["Derivative(M(x),t)", "diff(M(x),t)", "D[M[x],t]"])
+def test_the_rate_of_a_function_of_a_coordinate_is_asked_about(rate: str) -> None:
+    question = {
+        "kind": "euler-lagrange", "q": ["x"], "L": "M(x)*x_dot**2/2 - k*x**2/2", "functions": {"M": ["x"]},
+        "parameters": {"k": "positive"},
+    }  # fmt: skip
+    for claim in (f"M(x)*x'' + {rate}*x'/2 + k*x = 0", f"M(x)*x'' + M'(x)*x'**2/2 + k*x + {rate} = 0"):
+        assert judged({**question, "claim": [claim]}).status == "invalid"
+    assert judged({**question, "claim": ["M(x)*x'' + d/dt(M(x))*x'/2 + k*x = 0"]}).status == "holds"
+
+
+@pytest.mark.parametrize(
+    ("values", "status"),
+    [
+        (["a", "-a"], "holds"),
+        (["Abs(a)", "-Abs(a)"], "holds"),
+        (["sqrt(a**2)", "-sqrt(a**2)"], "holds"),
+        (["a", "-a", "Abs(a)"], "holds"),
+        (["Abs(a)"], "fails"),
+        (["a", "Abs(a)"], "fails"),
+    ],
+)
+def test_several_values_together_may_be_the_solutions(values: list[str], status: str) -> None:
+    question = {
+        "kind": "parameters", "of": "solution", "q": ["x"], "L": "x_dot**2/2 - a**2*x**2/2", "find": ["w"],
+        "parameters": {"a": "nonzero", "w": "nonzero", "A": "nonzero"}, "solution": {"x": "A*sin(w*t)"},
+    }  # fmt: skip
+    assert judged({**question, "values": [{"w": value} for value in values]}).status == status
+
+
+@pytest.mark.parametrize("sign", ["positive", "nonzero"])
+def test_the_difference_of_two_angles_is_a_step_whatever_their_factor_is_called(sign: str) -> None:
+    question = {
+        "kind": "adiabatic-invariant", "q": ["q"], "p": ["p"], "H": "p**2/2 + w(tau)**2*q**2/2", "slow": "tau",
+        "functions": {"w": ["tau"]}, "parameters": {"eps": "positive", "w": sign}, "small": "eps",
+    }  # fmt: skip
+    action = "(p**2 + w(tau)**2*q**2)/w(tau)"
+    assert judged({**question, "I": action}).status == "holds"
+    assert judged({**question, "I": f"{action} + atan2(w(tau)*q,p) - atan(w(tau)*q/p)"}).status == "fails"
