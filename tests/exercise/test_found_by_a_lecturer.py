@@ -135,3 +135,14 @@ def test_the_difference_of_two_angles_is_a_step_whatever_their_factor_is_called(
     action = "(p**2 + w(tau)**2*q**2)/w(tau)"
     assert judged({**question, "I": action}).status == "holds"
     assert judged({**question, "I": f"{action} + atan2(w(tau)*q,p) - atan(w(tau)*q/p)"}).status == "fails"
+
+
+@pytest.mark.slow
+def test_points_at_fixed_distances_end_in_their_budget(processor_seconds) -> None:
+    q = [f"{axis}{point}" for point in (1, 2, 3) for axis in "xyz"]
+    pairs = [(1, 2), (2, 3), (1, 3)]
+    apart = ["(x{0}-x{1})**2 + (y{0}-y{1})**2 + (z{0}-z{1})**2 - l**2".format(*pair) for pair in pairs]
+    question = {"kind": "degrees-of-freedom", "q": q, "constraints": apart, "parameters": {"l": "positive"}}
+    before = processor_seconds()
+    assert judged({**question, "dof": "6", "budget": 2}).status in ("holds", "undecided")
+    assert processor_seconds() - before < 60

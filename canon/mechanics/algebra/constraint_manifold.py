@@ -8,6 +8,7 @@ lie in its closure: constraints are split into factors first.
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
@@ -85,7 +86,11 @@ class _Solution:
 
 
 def on_manifold(
-    constraints: Sequence[Expr], domain: Domain, keep: Sequence[Symbol] = (), prefer: Sequence[Symbol] = ()
+    constraints: Sequence[Expr],
+    domain: Domain,
+    keep: Sequence[Symbol] = (),
+    prefer: Sequence[Symbol] = (),
+    until: float = math.inf,
 ) -> list[Branch]:
     """Return the branches of the set where all the constraints vanish.
 
@@ -99,11 +104,13 @@ def on_manifold(
         Symbols that are not to be solved for, such as the time.
     prefer
         Symbols that are solved for where there is a choice, such as velocities.
+    until
+        When to stop, on the clock of ``time.monotonic``; what is being solved then is ended.
 
     Raises
     ------
     Undecided
-        Where a constraint can't be solved for any symbol in closed form.
+        Where a constraint can't be solved for any symbol in closed form, or not in time.
     EmptyDomainError
         Where no point of the domain satisfies the constraints: a claim about none is not taken for right.
 
@@ -116,7 +123,9 @@ def on_manifold(
     """
     branches = [Branch({}, domain)]
     for constraint in constraints:
-        branches = [part for branch in branches for part in _restricted(branch, constraint, keep, prefer)]
+        branches = [
+            part for branch in branches for part in _restricted(branch, constraint, keep, prefer, until)
+        ]
         if len(branches) > MAX_BRANCHES:
             raise Undecided(f"the constraints have more than {MAX_BRANCHES} branches; split the claim")
     branches = [branch for branch in branches if not any(_without_value(c, branch) for c in constraints)]
@@ -251,8 +260,10 @@ def _signs(symbol: Symbol, value: Expr) -> Iterator[Boolean]:
 
 
 def _restricted(
-    branch: Branch, constraint: Expr, keep: Sequence[Symbol], prefer: Sequence[Symbol]
+    branch: Branch, constraint: Expr, keep: Sequence[Symbol], prefer: Sequence[Symbol], until: float
 ) -> Iterator[Branch]:
+    if time.monotonic() > until:
+        raise Undecided("the constraints were not solved in time; give more of it, or fewer constraints")
     here = substitute(constraint, branch.values)
     if here.is_nonzero:
         return

@@ -84,7 +84,8 @@ class ConstraintSystem:
     def branches(self) -> list[Branch]:
         """The positions and velocities that are allowed."""
         v = tuple(velocity(x) for x in self.q)
-        return inhabited(on_manifold((*self.positions, *self.rates), self.domain, keep=(self.t,), prefer=v))
+        constraints = (*self.positions, *self.rates)
+        return inhabited(on_manifold(constraints, self.domain, keep=(self.t,), prefer=v, until=self.until))
 
     @cached_property
     def forms(self) -> Pfaffian:
