@@ -12,7 +12,7 @@ from canon.exercise.judges.lagrangian import lagrangian_of
 from canon.exercise.question.answer import stay_open
 from canon.exercise.question.continuous_answer import constants_are_continuous
 from canon.exercise.question.question import Determines, Part, Question, Regular, Same, Tells, wrong_variables
-from canon.expression.symbols.symbol import acceleration, velocity
+from canon.expression.symbols.symbol import Rate, acceleration, velocity
 from canon.mechanics.algebra.constraint_manifold import on_manifold, transported
 from canon.mechanics.algebra.possible_motion import motion_is_continuous, motion_is_real
 from canon.mechanics.algebra.substitution import substitute
@@ -67,7 +67,7 @@ def _solution(reading: Reading, system: Hamiltonian) -> Iterator[Question]:
         reading.fault("solution", f"should say what each of {', '.join(names)} is, and nothing else")
     motion = {names[name]: value for name, value in table.items()}
     for z, value in motion.items():
-        if value.has(*motion):
+        if value.has(*motion) or value.atoms(Rate):
             reading.fault(f"solution.{z}", f"should depend on {system.t} and parameters only")
     yield from motion_is_real(motion, reading.domain)
     domain = transported(reading.domain, motion)

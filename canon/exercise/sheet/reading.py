@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -330,7 +331,7 @@ class Reading:
             said = parsed(parse, str(text), self.scope)
         except LanguageError as error:
             raise self.error(key, error) from error
-        if self._is_of_phase_space and key.partition("[")[0] not in _RATES_TOO:
+        if self._is_of_phase_space and re.split(r"[\[.]", key)[0] not in _RATES_TOO:
             self._refuse_rates(said, key)
         return substitute(said, self.at) if self.at else said
 
@@ -346,8 +347,8 @@ class Reading:
             self.fault(key, f"should be a function of q, p and t; eliminate {', '.join(found)}")
 
 
-_RATES_TOO = ("domain", "q_dot", "p_dot")
-"""Keys under which velocities may stand in phase space: in Hamilton's equations they are told by the judge."""
+_RATES_TOO = ("domain", "q_dot", "p_dot", "solution")
+"""Keys under which velocities may stand in phase space, in chains at least; the judge tells them elsewhere."""
 
 
 def _the_one(value: Any) -> Any:
