@@ -146,3 +146,49 @@ def test_points_at_fixed_distances_end_in_their_budget(processor_seconds) -> Non
     before = processor_seconds()
     assert judged({**question, "dof": "6", "budget": 2}).status in ("holds", "undecided")
     assert processor_seconds() - before < 60
+
+
+M = {"m": "positive", "k": "positive"}
+OSCILLATOR = {
+    "kind": "hamilton-jacobi", "q": ["x"], "p": ["p"], "H": "p**2/(2*m) + m*w**2*x**2/2", "constants": ["E"],
+    "parameters": {"m": "positive", "w": "positive"},
+}  # fmt: skip
+SLOW_AND_FAST = {
+    "kind": "euler-lagrange", "q": ["x"], "L": "-m*c**2*sqrt(1 - x_dot**2/c**2) - k*x**2/2",
+    "parameters": {**M, "c": "positive"},
+}  # fmt: skip
+LEGENDRE = {"kind": "legendre-hamiltonian", "q": ["x"], "p": ["p"], "parameters": M}
+ROOT = "x*sqrt(2*m*E - m**2*w**2*x**2)/2"
+
+
+@pytest.mark.parametrize(
+    ("question", "right", "wrong"),
+    [
+        (OSCILLATOR, {"W": f"{ROOT} + E/w*asin(x*w*sqrt(m/(2*E)))"}, {"W": f"{ROOT} - E/w*asin(x*w*sqrt(m/(2*E)))"}),
+        (
+            OSCILLATOR,
+            {"S": f"{ROOT} - E/w*acos(x*w*sqrt(m/(2*E))) - E*t"},
+            {"S": f"{ROOT} - E/w*acos(x*w*sqrt(m/(2*E))) + E*t"},
+        ),
+        (OSCILLATOR, {"W": f"{ROOT} + E/w*asin(x*w*sqrt(m)/sqrt(2*E))"}, {"W": f"{ROOT} + sqrt(-1 - x**2)"}),
+        (
+            SLOW_AND_FAST,
+            {"claim": ["m*x'' = -k*x*sqrt((1 - x'**2/c**2)**3)"]},
+            {"claim": ["m*x'' = -k*x*sqrt(1 - x'**2/c**2)"]},
+        ),
+        (
+            {**LEGENDRE, "L": "m*x_dot**2/2 - k*x**(3/2)"},
+            {"H": "p**2/(2*m) + k*sqrt(x**3)"},
+            {"H": "p**2/(2*m) - k*sqrt(x**3)"},
+        ),
+        (
+            {**LEGENDRE, "L": "m*x_dot**2/2 - k*log(x)"},
+            {"H": "p**2/(2*m) - k*log(1/x)"},
+            {"H": "p**2/(2*m) + k*log(1/x)"},
+        ),
+        ({**LEGENDRE, "L": "log(x_dot)"}, {"H": "1 + log(p)"}, {"H": "1 - log(p)"}),
+    ],
+)  # fmt: skip
+def test_what_is_not_real_refutes_nothing(question: dict, right: dict, wrong: dict) -> None:
+    assert judged({**question, **right}).status == "holds"
+    assert judged({**question, **wrong}).status == "fails"

@@ -30,6 +30,7 @@ from canon.expression.symbols.symbol import Rate
 from canon.expression.symbols.user_input import counted
 from canon.expression.text.units import units
 from canon.frozen_mapping import FrozenMapping
+from canon.mechanics.algebra.possible_motion import where_real
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.hamilton.pfaffian_form import displacements, divided_by_dt
 from canon.proof.domain.domain import Domain
@@ -198,7 +199,8 @@ class Reading:
             and is_empty(domain, time.monotonic() + 0.5)
         ):
             self.fault("domain", "no point satisfies these conditions and assumptions together")
-        return domain
+        given = self.has("L") and "L" not in self.kind.answer
+        return where_real([self.expression("L")], domain) if given else domain
 
     def _of_rates(self) -> Iterator[Boolean]:
         """Yield what ``parameters`` assumes of velocities and accelerations, as conditions."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 
-from canon.mechanics.algebra.substitution import substitute
+from canon.mechanics.algebra.substitution import substitute, symbols_of
 from canon.proof.continuity.continuity import continuity
 from canon.proof.continuity.jumps import shown
 from canon.proof.continuity.one_sided import cuts_of
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["motion_is_continuous", "motion_is_real"]
+__all__ = ["motion_is_continuous", "motion_is_real", "where_real"]
 
 POINTS = 40
 """Points at which a motion is looked at."""
@@ -42,6 +42,29 @@ def motion_is_real(motion: Mapping[Symbol, Expr], domain: Domain) -> Iterator[Ve
     on_time = Domain(tuple(c for c in domain.conditions if not c.has(*motion)), domain.box)
     for x, place in motion.items():
         yield _is_real(place, x, on_time)
+
+
+def where_real(functions: Sequence[Expr], domain: Domain) -> Domain:
+    """Return the part of a domain where square roots and logarithms are real: elsewhere there is no motion.
+
+    It is the domain itself where there is no such part, or where all of it is.
+
+    Examples
+    --------
+    >>> x = sp.Symbol("x", real=True)
+    >>> where_real([x ** sp.Rational(3, 2) + sp.log(2 - x)], Domain()).conditions
+    (x > 0, x < 2)
+    """
+    inside = dict.fromkeys(
+        cast("Expr", part.args[0])
+        for f in functions
+        for part in sorted(f.atoms(sp.Pow, sp.log), key=sp.default_sort_key)
+        if isinstance(part, sp.log) or (part.exp.is_Rational and part.exp.q % 2 == 0)
+    )
+    bounds = [sp.Gt(f, 0) for f in inside if f.is_extended_real and not f.is_nonnegative]
+    real = Domain((*domain.conditions, *(c for c in bounds if c not in (sp.true, sp.false))), domain.box)
+    symbols = {s for f in functions for s in symbols_of(f)}
+    return real if bounds and next(iter(real.points(symbols, 1)), None) is not None else domain
 
 
 def motion_is_continuous(

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import combinations
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
@@ -26,11 +26,10 @@ from canon.exercise.question.question import (
     wrong_variables,
 )
 from canon.expression.symbols.user_input import counted
-from canon.mechanics.algebra.possible_motion import motion_is_real
-from canon.mechanics.algebra.substitution import substitute, symbols_of
+from canon.mechanics.algebra.possible_motion import motion_is_real, where_real
+from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.integrable.separability import is_separable
-from canon.proof.domain.domain import Domain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -79,7 +78,7 @@ def complete_integral(reading: Reading) -> Iterator[Question]:
     ]
     yield Same(
         tuple(parts),
-        _where_roots_are_real((*slopes, *([] if whole is None else [whole])), reading),
+        where_real((*slopes, *([] if whole is None else [whole])), reading.domain),
         _no_answer,
     )
     yield Regular(
@@ -97,21 +96,6 @@ def complete_integral(reading: Reading) -> Iterator[Question]:
         yield (
             replace(verdict, feedback="a momentum p = ∂W/∂q is not real there") if verdict.fails else verdict
         )
-
-
-def _where_roots_are_real(functions: Sequence[Expr], reading: Reading) -> Domain:
-    """Return the part of the domain where square roots are real, as E > V: elsewhere there is no motion.
-
-    Where there is no such part, the answer has no real value anywhere, which is told of its momenta.
-    """
-    roots = [e for f in functions for e in f.atoms(sp.Pow) if e.exp.is_Rational and e.exp.q % 2 == 0]
-    bases = dict.fromkeys(cast("Expr", e.base) for e in roots if not e.base.is_nonnegative)
-    if not bases:
-        return reading.domain
-    whole = reading.domain
-    real = Domain((*whole.conditions, *(sp.Gt(base, 0) for base in bases)), whole.box)
-    symbols = {s for f in functions for s in symbols_of(f)}
-    return whole if next(iter(real.points(symbols, 1)), None) is None else real
 
 
 def _check_constants(reading: Reading, H: Expr, constants: Sequence[Symbol]) -> None:
