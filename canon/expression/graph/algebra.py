@@ -57,6 +57,26 @@ def add(arena: Arena, terms: Iterable[int]) -> int:
 
 def mul(arena: Arena, factors: Iterable[int]) -> int:
     """Return the product of nodes, powers of equal bases merged."""
+    constant, exponents, alone = _merged(arena, factors)
+    operands: list[int] = []
+    for base, exponent in exponents.items():
+        if base in alone:
+            operands.append(alone[base])
+            continue
+        raised = base if exponent == 1 else power(arena, base, arena.number(exponent))
+        if arena.nodes[raised].kind == "number":
+            constant *= arena.nodes[raised].value
+        else:
+            operands.append(raised)
+    if not constant:
+        return arena.number(0)
+    return _product(arena, constant, tuple(sorted(operands)))
+
+
+def _merged(
+    arena: Arena, factors: Iterable[int]
+) -> tuple[Fraction | int, dict[int, Fraction | int], dict[int, int]]:
+    """Return the number before a product, the exponents of its bases, and the powers that may stay as they stand."""
     constant: Fraction | int = 1
     exponents, alone = dict[int, Fraction | int](), dict[int, int]()
     for factor in _flat(arena, "mul", factors):
@@ -72,19 +92,7 @@ def mul(arena: Arena, factors: Iterable[int]) -> int:
             exponents[base] = exponent
             if base == factor or arena.nodes[base].kind not in _REWRITTEN:
                 alone[base] = factor  # as it stands: it is the power that would be made again
-    operands: list[int] = []
-    for base, exponent in exponents.items():
-        if base in alone:
-            operands.append(alone[base])
-            continue
-        raised = base if exponent == 1 else power(arena, base, arena.number(exponent))
-        if arena.nodes[raised].kind == "number":
-            constant *= arena.nodes[raised].value
-        else:
-            operands.append(raised)
-    if not constant:
-        return arena.number(0)
-    return _product(arena, constant, tuple(sorted(operands)))
+    return constant, exponents, alone
 
 
 def power(arena: Arena, base: int, exponent: int) -> int:

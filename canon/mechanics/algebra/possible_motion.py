@@ -55,11 +55,11 @@ def where_real(functions: Sequence[Expr], domain: Domain) -> Domain:
     >>> where_real([x ** sp.Rational(3, 2) + sp.log(2 - x)], Domain()).conditions
     (x > 0, x < 2)
     """
+    parts = sorted({part for f in functions for part in f.atoms(sp.Pow, sp.log)}, key=sp.default_sort_key)
     inside = dict.fromkeys(
-        cast("Expr", part.args[0])
-        for f in functions
-        for part in sorted(f.atoms(sp.Pow, sp.log), key=sp.default_sort_key)
-        if isinstance(part, sp.log) or (part.exp.is_Rational and part.exp.q % 2 == 0)
+        part.args[0]
+        for part in parts
+        if isinstance(part, sp.log) or (part.args[1].is_Rational and sp.fraction(part.args[1])[1] % 2 == 0)
     )
     bounds = [sp.Gt(f, 0) for f in inside if f.is_extended_real and not f.is_nonnegative]
     real = Domain((*domain.conditions, *(c for c in bounds if c not in (sp.true, sp.false))), domain.box)
