@@ -85,6 +85,10 @@ def agree(found, expected):
     for k in range(2):
         point = {s: sp.Rational(5 + 7 * i + 3 * k, 11 + 2 * i) for i, s in enumerate(symbols)}
         values = [sp.N(f.xreplace(point), 30) for f in (found, expected)]
+        if not all(value.is_finite for value in values):  # atan(I) has no value, whoever writes it
+            if any(value.is_finite for value in values):
+                return False
+            continue
         if not abs(values[0] - values[1]) < 1e-18 * (1 + abs(values[1])):
             return False
     return True
