@@ -199,8 +199,17 @@ class Reading:
             and is_empty(domain, time.monotonic() + 0.5)
         ):
             self.fault("domain", "no point satisfies these conditions and assumptions together")
-        given = self.has("L") and "L" not in self.kind.answer
-        return where_real([self.expression("L")], domain) if given else domain
+        return self._where_motion_is_real(domain)
+
+    def _where_motion_is_real(self, domain: Domain) -> Domain:
+        """Return the part of a domain where the given Lagrangian is real."""
+        if not self.has("L") or "L" in self.kind.answer:
+            return domain
+        try:
+            L = self.expression("L")
+        except InvalidClaim:  # it is told where it is read
+            return domain
+        return where_real([L], domain)
 
     def _of_rates(self) -> Iterator[Boolean]:
         """Yield what ``parameters`` assumes of velocities and accelerations, as conditions."""
