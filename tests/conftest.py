@@ -24,6 +24,7 @@ PATIENCE = 4
 """A test may have so many times as long while more wants to run than there are processors."""
 
 DOCUMENTATION = "test_the_documentation_builds_without_warnings_from_a_fresh_clone"
+"""It executes all pages, and may have three times as long."""
 
 LONG = frozenset(Path(__file__).with_name("long_tests.txt").read_text(encoding="utf-8").splitlines())
 """Tests that `.ci/weigh` found to take long: they are run with the slow ones."""
@@ -53,18 +54,18 @@ def pytest_runtest_call(item):
     if not hasattr(signal, "setitimer"):
         return (yield)
 
-    left = PATIENCE - 1
+    left, longest = PATIENCE - 1, LONGEST * (3 if item.name == DOCUMENTATION else 1)
 
     def give_up(*_):
         nonlocal left
         if left and os.getloadavg()[0] > (os.cpu_count() or 1):
             left -= 1
-            signal.setitimer(signal.ITIMER_REAL, LONGEST)
+            signal.setitimer(signal.ITIMER_REAL, longest)
             return
-        pytest.fail(f"not ended after {LONGEST:g} s; split it, or find what does not end")
+        pytest.fail(f"not ended after {longest:g} s; split it, or find what does not end")
 
     before = signal.signal(signal.SIGALRM, give_up)
-    signal.setitimer(signal.ITIMER_REAL, LONGEST)
+    signal.setitimer(signal.ITIMER_REAL, longest)
     try:
         return (yield)
     finally:

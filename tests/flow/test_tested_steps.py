@@ -183,7 +183,7 @@ SHAPES = {
 
 FEWER = (4, 7, 10, 14, 18, 24, 30)
 """Powers of the ways in which each of them needs machine code of its own, by far the most of the time."""
-OF_WAYS = {"quad": (7, 8, 16, 30), "extended": FEWER, "tolerance": FEWER}
+OF_WAYS = {"double": POWERS[::2], "quad": (7, 16, 30), "extended": FEWER, "tolerance": FEWER}
 
 
 def scan_wells(name: str, shape: str) -> None:
@@ -236,7 +236,7 @@ def test_none_of_many_wells_is_silently_wrong(name: str, shape: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("first", range(4))
 def test_nor_are_fields_and_ensembles(first: int) -> None:
-    in_a_child(f"scan_fields_and_ensembles({first}, 4)")
+    in_a_child(f"scan_fields_and_ensembles({first}, 8)")
 
 
 def test_a_trial_step_beyond_doubles_is_gone_back_from_in_silence():
