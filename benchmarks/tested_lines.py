@@ -1,7 +1,7 @@
 """How much of each room its tests run: lines and branches, those of processes that tests start included.
 
-python benchmarks/tested_lines.py                    # the quick tests, in an order drawn at random (half an hour)
-python benchmarks/tested_lines.py -m slow            # what the slow ones run beside them (hours): both are counted
+python benchmarks/tested_lines.py                    # the quick tests, in an order drawn at random
+python benchmarks/tested_lines.py -m slow            # what the slow ones run beside them: both are counted
 python benchmarks/tested_lines.py --report           # nothing is run: the table of what was
 python benchmarks/tested_lines.py --report study     # and the lines of a folder that are not run
 

@@ -17,7 +17,7 @@ x, y = coordinates("x y")
 px, py = x.momentum, y.momentum
 kepler = Hamiltonian((px**2 + py**2) / 2 - 1 / sqrt(x**2 + y**2), [x, y], [px, py])
 start = np.array([1.0, 0.0, 0.0, 1.1])
-until = 40.0  # nearly five orbits
+until = 40.0  # four orbits and a half
 cloud = 0.003 * np.random.default_rng(1).standard_normal((4, 500))
 true = propagate(kepler, (0, until), start[:, None] + cloud, samples=1).y[:, -1]
 

@@ -54,7 +54,7 @@ def judged(keys):
         (
             {"kind": "lie-series", **PHASE, "f": "q", "W": "p", "small": "eps", "order": 1},
             {"claim": "q + eps"},
-            {"claim": "q + eps + q_dot - q_dot"},
+            {"claim": "q + eps*q_dot"},
         ),
         (
             {"kind": "solution", "q": ["x"], "equations": ["x_ddot + x = 0"]},
@@ -72,11 +72,7 @@ def judged(keys):
 def test_rates_are_no_constants(question: dict, right: dict, wrong: dict) -> None:
     parameters = {"parameters": {"eps": "real"}} if "small" in question else {}
     assert judged({**question, **parameters, **right}).status == "holds"
-    found = judged({**question, **parameters, **wrong})
-    if question["kind"] == "lie-series":  # nothing of the rate is left
-        assert found.status in ("holds", "invalid")
-    else:
-        assert found.status == "invalid"
+    assert judged({**question, **parameters, **wrong}).status == "invalid"
 
 
 def test_velocities_in_hamiltons_equations_are_wrong_and_may_stand_on_the_left() -> None:

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from canon.kernel.llvm.band_solver import BandSolver, band_order, pays
+from canon.kernel.llvm.band_solver import BandSolver, band_order, is_narrow
 from canon.kernel.llvm.linear_solver import LinearSolver
 from canon.kernel.llvm.loop import compiled_function
 from canon.kernel.llvm.number_types import DOUBLE
@@ -81,11 +81,11 @@ def test_neighbours_stand_beside_each_other():
     order, reach = band_order(places, 2 * sites)
     assert sorted(order) == list(range(2 * sites))
     assert reach == max(abs(order[i] - order[j]) for i, j in places) <= 4
-    assert pays(6 * sites, 3 * (reach + 1) - 1)
+    assert is_narrow(6 * sites, 3 * (reach + 1) - 1)
 
 
 def test_where_all_act_on_all_a_band_does_not_pay():
     order, reach = band_order([(i, j) for i in range(8) for j in range(8)], 8)
     assert (sorted(order), reach) == (list(range(8)), 7)
-    assert not pays(8, 7)
+    assert not is_narrow(8, 7)
     assert band_order([], 3)[1] == 0

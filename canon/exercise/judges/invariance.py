@@ -57,7 +57,6 @@ def invariance(reading: Reading) -> Iterator[Question]:
     for key in ("p",) if reading.has("F") else ("p", "P"):
         if not reading.has(key):
             reading.fault(key, f"missing; a map of phase space is needed for {subject}")
-    _check_free_of_rates(reading)
     if reading.has("F"):
         yield from _generated(reading)
         return
@@ -74,15 +73,6 @@ def invariance(reading: Reading) -> Iterator[Question]:
         yield Same(_lagrange_parts(Q, P, q, p), domain, _no_answer, is_instead)
     else:
         yield from _hamiltonian_form(reading, domain, Q, P, q, p)
-
-
-def _check_free_of_rates(reading: Reading) -> None:
-    """Refuse maps of phase space that hold velocities: these are no variables of it."""
-    q = (*reading.symbols("q"), *(reading.symbols("new_q") if reading.has("F") else ()))
-    rates = [f(x) for x in q for f in (velocity, acceleration)]
-    for key in ("F",) if reading.has("F") else ("Q", "P"):
-        if reading.has(key) and any(f.has(*rates) for f in reading.expressions(key)):
-            reading.fault(key, "a map of phase space depends on coordinates, momenta and time only")
 
 
 def _hamiltonian_form(

@@ -348,8 +348,9 @@ class Reading:
 
     @cached_property
     def _is_of_phase_space(self) -> bool:
-        """Whether the claim is about functions of q, p and t: coordinates have momenta, and no L is given."""
-        return self.is_names("p") and not self.has("L")
+        """Whether the claim is about functions of q, p and t: coordinates have momenta, and H is given or L is not."""
+        given = self.has("H") and "H" not in self.kind.answer
+        return self.is_names("p") and (given or not self.has("L"))
 
     def _refuse_rates(self, said: Basic, key: str) -> None:
         """Refuse what holds velocities or accelerations, which would count as free constants."""
@@ -358,7 +359,7 @@ class Reading:
             self.fault(key, f"should be a function of q, p and t; eliminate {', '.join(found)}")
 
 
-_RATES_TOO = ("domain", "q_dot", "p_dot", "solution")
+_RATES_TOO = ("L", "domain", "q_dot", "p_dot", "solution")
 """Keys under which velocities may stand in phase space, in chains at least; the judge tells them elsewhere."""
 
 

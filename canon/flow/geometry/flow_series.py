@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 __all__ = ["FlowSeries", "flow_series"]
 
 MOST_EQUATIONS = 4000
-"""Equations for the derivatives that are integrated at most: beyond it compiling them takes minutes."""
+"""Equations for the derivatives that are integrated at most: they are compiled anew for every system and order."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,7 +145,7 @@ class FlowSeries:
     def symplecticity_defect(self) -> float:
         """The largest coefficient of D(δ)ᵀ J D(δ) − J, D = ∂y/∂δ, over the size of the terms it is the sum of.
 
-        Of all powers of δ below ``order``. The derivatives of a symplectic flow fulfil them; round-off is some 1e-15.
+        Of all powers of δ below ``order``. The derivatives of a symplectic flow fulfil them up to round-off.
         """
         size = len(self.coefficients)
         n = size // 2

@@ -16,7 +16,7 @@ from canon.kernel.llvm.linear_solver import LinearSolver
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["BandSolver", "band_memory", "band_order", "pays"]
+__all__ = ["BandSolver", "band_memory", "band_order", "is_narrow"]
 
 
 def band_order(places: Sequence[tuple[int, int]], size: int) -> tuple[list[int], int]:
@@ -49,7 +49,7 @@ def band_order(places: Sequence[tuple[int, int]], size: int) -> tuple[list[int],
     return order.tolist(), int(abs(order[rows] - order[columns]).max(initial=0))
 
 
-def pays(size: int, reach: int) -> bool:
+def is_narrow(size: int, reach: int) -> bool:
     """Tell whether a band is narrow enough for its longer rows, in which exchanged rows have their place."""
     return 2 * band_memory(size, reach) <= size**2
 
@@ -118,8 +118,6 @@ class BandSolver(LinearSolver):
     def solve(self, right: str) -> None:
         """Write the solution over the right-hand side at an address."""
         w, reach = self.w, self.reach
-        with w.loop(self.size, self.right_length) as i:
-            w.store(w.constant(Fraction(0)), right, i)
         with w.loop(0, self.size) as k:
             self.exchange_right(k, right)
             back = w.negative(w.load(right, k))

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
-from canon.kernel.llvm.band_solver import BandSolver, band_memory, band_order, pays
+from canon.kernel.llvm.band_solver import BandSolver, band_memory, band_order, is_narrow
 from canon.kernel.llvm.lane_rows import store_row
 from canon.kernel.llvm.linear_solver import LinearSolver, large_array
 
@@ -54,7 +54,7 @@ def newton_stages(
     places = [(i, j) for i, row in enumerate(slopes) for j, slope in enumerate(row) if slope != graph.zero]
     order, reach = band_order(places, len(state))
     reach = (reach + 1) * len(mu) - 1  # all stages of a variable beside each other
-    narrow = pays(equations, reach)
+    narrow = is_narrow(equations, reach)
     with large_array(w, band_memory(equations, reach) if narrow else equations**2) as matrix:
         pivots = w.reserve(f"[{equations} x i64], align 64")
         if narrow:

@@ -105,7 +105,7 @@ def on_manifold(
     prefer
         Symbols that are solved for where there is a choice, such as velocities.
     until
-        When to stop, on the clock of ``time.monotonic``; what is being solved then is ended.
+        When to stop, on the clock of ``time.monotonic``; the constraint that is being solved then is finished first.
 
     Raises
     ------

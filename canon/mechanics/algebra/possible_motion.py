@@ -47,7 +47,8 @@ def motion_is_real(motion: Mapping[Symbol, Expr], domain: Domain) -> Iterator[Ve
 def where_real(functions: Sequence[Expr], domain: Domain) -> Domain:
     """Return the part of a domain where square roots and logarithms are real: elsewhere there is no motion.
 
-    It is the domain itself where there is no such part, or where all of it is.
+    Each root and logarithm is asked to be real by itself, as √(x³)/√x is written for x > 0. It is the domain itself
+    where there is no such part, or where all of it is.
 
     Examples
     --------

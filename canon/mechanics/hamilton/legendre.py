@@ -10,6 +10,7 @@ from sympy import Expr, Symbol
 
 from canon.mechanics.algebra.branch_point import branch_points
 from canon.mechanics.algebra.linear import SingularMatrixError, eliminate, is_regular, solve
+from canon.mechanics.algebra.possible_motion import where_real
 from canon.mechanics.algebra.solve_on_branch import Inversion, solve_system
 from canon.mechanics.algebra.substitution import entry, exchanged, size, substitute
 from canon.proof.domain.domain import Domain
@@ -196,9 +197,7 @@ def is_dual(H: Expr, L: Expr, v: Symbol, p: Symbol) -> bool:
 
 def _where_real(f: Expr, old: Sequence[Symbol], domain: Domain) -> Domain:
     """Return the domain where roots in f are real, as √(1 − v²/c²) is below the speed of light."""
-    radicands = [e.base for e in f.atoms(sp.Pow) if e.has(*old) and _exponent(e).is_Rational and _is_even(e)]
-    above = (sp.Gt(radicand, 0) for radicand in dict.fromkeys(radicands) if not radicand.is_nonnegative)
-    return Domain((*domain.conditions, *(c for c in above if c is not sp.true)), domain.box)
+    return where_real([e for e in f.atoms(sp.Pow) if e.has(*old)], domain)
 
 
 def where_root_is_real(f: Expr, old: Sequence[Symbol], domain: Domain) -> Domain:
@@ -220,10 +219,6 @@ def where_root_is_real(f: Expr, old: Sequence[Symbol], domain: Domain) -> Domain
     one = len({e.as_base_exp()[0] for e in roots}) == 1
     halves = all((2 * e.as_base_exp()[1]).is_Integer for e in roots)
     return _where_real(f, old, domain) if one and halves and not inside and not f.has(sp.I) else domain
-
-
-def _is_even(power: sp.Pow) -> bool:
-    return bool(sp.fraction(_exponent(power))[1] % 2 == 0)
 
 
 def _candidates(

@@ -14,7 +14,6 @@ from itertools import combinations
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
-from sympy.core.function import AppliedUndef
 
 from canon.proof.analytic import is_positive_between, is_uncut, proved_sign
 from canon.proof.continuity.jumps import Jump, continued, find_jump, shown
@@ -25,6 +24,7 @@ from canon.proof.continuity.one_sided import (
     proportion,
     with_moduli,
     without_complex_logarithms,
+    without_functions_of_parameters,
 )
 from canon.proof.continuity.smooth import PIECED
 from canon.proof.continuity.winding_centre import centre_of
@@ -102,7 +102,7 @@ def continuity(
     ('atan(q/p) is an angle that winds around p = 0, q = 0; where it jumps is a matter of choice',)
     """
     deadline, moving, name = time.monotonic() + budget, tuple(variables), name or str(f)
-    f = _with_parameters(f, moving, domain)
+    f = without_functions_of_parameters(f, moving, domain)
     f = without_complex_logarithms(with_moduli(off_the_kinks(f)))
     f = sp.expand_mul(f) if anatomy([f]).tree <= LARGE else f
     terms = [t for t in sp.Add.make_args(f) if t.has(*moving)]
@@ -122,17 +122,6 @@ def continuity(
         why = f"whether {name} jumps was not decided in {budget:g} s"
         return Verdict(Status.UNDECIDED, found.question, evidence=(Evidence("open", why),), feedback=why)
     return found
-
-
-def _with_parameters(f: Expr, moving: Sequence[Symbol], domain: Domain) -> Expr:
-    """Return an expression in which functions of parameters alone, as ω(τ), are parameters: these have values."""
-    elsewhere = (*domain.conditions, *f.atoms(sp.Derivative, sp.Subs))
-    held = {
-        g: sp.Symbol(str(g), real=g.is_real, positive=g.is_positive)
-        for g in f.atoms(AppliedUndef)
-        if not g.has(*moving) and not any(part.has(g) for part in elsewhere)
-    }
-    return cast("Expr", f.xreplace(held)) if held else f
 
 
 def is_locally_constant(

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
+from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
 
 from canon.proof.domain.declarations import declared_complex
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
+    from canon.proof.domain.domain import Domain
+
 __all__ = [
     "Cut",
     "coprime",
@@ -32,6 +35,7 @@ __all__ = [
     "proportion",
     "with_moduli",
     "without_complex_logarithms",
+    "without_functions_of_parameters",
 ]
 
 LARGE = 400
@@ -255,6 +259,17 @@ def _modulus(product: Expr) -> Expr:
 def off_the_kinks(f: Expr) -> Expr:
     """Return a derivative without the impulses that SymPy writes where a sign jumps."""
     return cast("Expr", f.replace(lambda e: isinstance(e, sp.DiracDelta), lambda _: sp.S.Zero))
+
+
+def without_functions_of_parameters(f: Expr, moving: Sequence[Symbol], domain: Domain) -> Expr:
+    """Return an expression in which functions of parameters alone, as ω(τ), are parameters: these have values."""
+    elsewhere = (*domain.conditions, *f.atoms(sp.Derivative, sp.Subs))
+    held = {
+        g: sp.Symbol(str(g), real=g.is_real, positive=g.is_positive)
+        for g in f.atoms(AppliedUndef)
+        if not g.has(*moving) and not any(part.has(g) for part in elsewhere)
+    }
+    return cast("Expr", f.xreplace(held)) if held else f
 
 
 def without_complex_logarithms(f: Expr) -> Expr:
