@@ -37,6 +37,7 @@ def judgements(claim: Claim, kept: KeptExplanations | None = None) -> Iterator[t
     """
     try:
         finding = examine(claim)
+        said = finding.reading.warnings
     except InvalidClaim as error:
         yield invalid(claim, error.error.brief), True
         return
@@ -50,7 +51,7 @@ def judgements(claim: Claim, kept: KeptExplanations | None = None) -> Iterator[t
         yield replace(invalid(claim, known), status="undecided"), True
         return
     assumed = finding.verdict.assumed if finding.verdict.holds else ()
-    judgement = replace(_told(claim, finding.verdict), warnings=(*finding.reading.warnings, *assumed))
+    judgement = replace(_told(claim, finding.verdict), warnings=(*said, *assumed))
     yield judgement, False
     yield from _explained(claim, finding, judgement, kept)
 

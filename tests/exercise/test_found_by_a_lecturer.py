@@ -188,3 +188,50 @@ ROOT = "x*sqrt(2*m*E - m**2*w**2*x**2)/2"
 def test_what_is_not_real_refutes_nothing(question: dict, right: dict, wrong: dict) -> None:
     assert judged({**question, **right}).status == "holds"
     assert judged({**question, **wrong}).status == "fails"
+
+
+NEW_HAMILTONIAN = {
+    "kind": "transformed-hamiltonian-K", **NEW, "H": "(p**2 + w**2*q**2)/2", "parameters": {"w": "positive"},
+    "map": {"Q": ["atan2(w*q, p)"], "P": ["(p**2/w + w*q**2)/2"]},
+}  # fmt: skip
+W = "q*sqrt(2*E - q**2)/2 + E*asin(q/sqrt(2*E))"
+
+
+@pytest.mark.parametrize(
+    ("question", "right", "wrong"),
+    [
+        (NEW_HAMILTONIAN, {"K": "w*P + 1"}, {"K": "w*P + Q - atan(tan(Q))"}),
+        (NEW_HAMILTONIAN, {"K": "w*P + cos(t)"}, {"K": "w*P + atan(tan(2*Q)) - 2*Q"}),
+        (
+            {"kind": "hamilton-jacobi", **PHASE, "H": "p**2/2 + q**2/2", "constants": ["E"]},
+            {"W": "q*sqrt(2*E - q**2)/2 + E*atan2(q, sqrt(2*E - q**2))"},
+            {"W": f"{W} + atan(q) + atan(1/q)"},
+        ),
+    ],
+)
+def test_steps_beside_what_jumps_itself(question: dict, right: dict, wrong: dict) -> None:
+    """An angle of the map excuses no jump elsewhere: Q − atan(tan Q) is 0 on one side of p = 0 and π on the other."""
+    assert judged({**question, **right}).status == "holds"
+    assert judged({**question, **wrong}).status == "fails"
+
+
+def test_where_a_lagrangian_is_real_is_told() -> None:
+    right = {**SLOW_AND_FAST, "claim": ["m*x'' = -k*x*sqrt((1 - x'**2/c**2)**3)"]}
+    assert judged(right).warnings == ("judged where L is real: 1 - x_dot**2/c**2 > 0",)
+    assert judged({**right, "domain": "x_dot**2 < c**2"}).warnings == ()
+
+
+@pytest.mark.parametrize("claim", ["3,600,000 J", "3 600 000 J", r"$3\,600\,000$ J", "3.6 MJ"])
+def test_figures_in_groups_of_three(claim: str) -> None:
+    question = {"kind": "number", "claim": claim, "unit": "J"}
+    assert judged({**question, "value": "3.6e6 J"}).status == "holds"
+    assert judged({**question, "value": "3.6e5 J"}).status == "fails"
+
+
+@pytest.mark.parametrize(
+    ("claim", "told"), [("100,200,300", "100200300, or 3 values"), ("27 °C", "from zero")]
+)
+def test_what_two_numbers_may_be_meant_by_is_asked(claim: str, told: str) -> None:
+    found = judged({"kind": "number", "claim": claim, "value": "300.15", "unit": "K"})
+    assert found.status == "invalid"
+    assert told in found.reasons[0]

@@ -162,7 +162,7 @@ class Reading:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is passed over in reading the claim: units after numbers."""
+        """What is passed over in reading the claim, as units after numbers are, and where L is not judged."""
         shapes = {**self.kind.shapes, "domain": Shape.TEXTS}
         said = {
             key: value
@@ -174,11 +174,24 @@ class Reading:
             f"the unit {unit} in {key} is passed over: numbers are read in any one consistent system of units"
             for key, unit in found
         )
-        return (*self.passed, *units_passed)
+        real = [c for c in self.domain.conditions if c not in self._given_domain.conditions]
+        judged = [f"judged where L is real: {', '.join(map(str, real))}"] if real else []
+        return (*self.passed, *units_passed, *judged)
 
     @cached_property
     def domain(self) -> Domain:
-        """The conditions of the claim and the box of its hints."""
+        """The conditions of the claim and the box of its hints, and where a given Lagrangian is real."""
+        domain = self._given_domain
+        if not self.has("L") or "L" in self.kind.answer:
+            return domain
+        try:
+            L = self.expression("L")
+        except InvalidClaim:  # it is told where it is read
+            return domain
+        return where_real([L], domain)
+
+    @cached_property
+    def _given_domain(self) -> Domain:
         conditions = [*self._of_rates()]
         for position, text in enumerate(as_list(self.claim.keys.get("domain", []))):
             condition = self._parse(parse_condition, text, f"domain[{position}]")
@@ -199,17 +212,7 @@ class Reading:
             and is_empty(domain, time.monotonic() + 0.5)
         ):
             self.fault("domain", "no point satisfies these conditions and assumptions together")
-        return self._where_motion_is_real(domain)
-
-    def _where_motion_is_real(self, domain: Domain) -> Domain:
-        """Return the part of a domain where the given Lagrangian is real."""
-        if not self.has("L") or "L" in self.kind.answer:
-            return domain
-        try:
-            L = self.expression("L")
-        except InvalidClaim:  # it is told where it is read
-            return domain
-        return where_real([L], domain)
+        return domain
 
     def _of_rates(self) -> Iterator[Boolean]:
         """Yield what ``parameters`` assumes of velocities and accelerations, as conditions."""

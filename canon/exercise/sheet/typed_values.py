@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from canon.exercise.sheet.field_texts import entries_of
 from canon.exercise.sheet.left_sides import Label, label_of
 from canon.exercise.sheet.quantities.calculations import calculated
-from canon.exercise.sheet.quantities.measures import measure_of, unit_behind
+from canon.exercise.sheet.quantities.measures import DEGREES, measure_of, unit_behind
 from canon.expression.parse import parse_expression, statements_of
 from canon.expression.text.declared_names import key_of
 from canon.expression.text.markup import unmarked
@@ -39,6 +39,9 @@ _NEARLY = re.compile(r"\\(?:approx|simeq|in)(?![A-Za-z])|[≈≃≅≐∈]|~=|(?
 _TEN = re.compile(r"(?<=[0-9])\s?([xX])\s?(?=10(?:\^|\*\*|[⁻⁺⁰¹²³⁴-⁹]))")
 _DOTS = re.compile(r"(?<=[0-9])(?:\.\.\.+|…|\\(?:dots|ldots|cdots)(?![A-Za-z]))")
 _COMMA = re.compile(r"(?<![0-9A-Za-z_.,])[0-9]+,[0-9]+(?![0-9,])")
+_THOUSANDS = re.compile(r"(?<![0-9A-Za-z_.,])[0-9]{1,3}(?:,[0-9]{3}){2,}(?![0-9,])")
+_GROUPS = re.compile(r"(?<![0-9A-Za-z_.,])[0-9]{1,3}(?:(?: |\u00a0|\u2009|\u202f|\\,)[0-9]{3})+(?![0-9])")
+"""Figures in groups of three, with gaps as the SI brochure has it (§5.4.4)."""
 _STOP = re.compile(r"(?<=[A-Za-zΩ°²³)}])\s?\.\s*$")
 """The full stop of a sentence, behind a unit."""
 _SIGNS = re.compile(r"\\pm(?![A-Za-z])|\\mp(?![A-Za-z])|±|∓|\+/[-−]")
@@ -122,7 +125,10 @@ def typed_values(text: str, scope: Scope, *, measured: bool, name: str = "") -> 
         whole, _, part = found.group().partition(",")
         reason = f"is {found.group()} the decimal {whole}.{part}, or two values?"
         raise LanguageError(text, found.start() + 1, reason, f"write {whole}.{part}, or {whole}; {part}")
-    text = _STOP.sub("", _plain_signs(unmarked(text), scope))
+    if measured and (degrees := DEGREES.search(text)):
+        reason = f"{degrees.group()} is no multiple of a unit: it does not count from zero"
+        raise LanguageError(text, degrees.start() + 1, reason, "write the temperature in K")
+    text = _STOP.sub("", _plain_signs(unmarked(_without_groups(text)), scope))
     if text.count(",") + text.count(";") > MOST_VALUES:
         raise LanguageError(text, 1, f"more than {MOST_VALUES} values", "split the claim")
     values: list[Value] = []
@@ -197,6 +203,24 @@ def signed_tables(place: str, table: Mapping[str, Any], fault: _Fault) -> list[M
         told = f"is ± of {two[0]} and of {two[1]} chosen together, or each by itself?"
         raise fault(place, LanguageError(text, 1, told, "write the tables one by one"))
     return [{**table, two[0]: text} for text in signed[two[0]]] if two else [table]
+
+
+def _without_groups(text: str) -> str:
+    r"""Return a text whose figures stand together, ``3600000`` for ``3 600 000``; every column after them is as it was.
+
+    Examples
+    --------
+    >>> _without_groups("3,600,000 J"), _without_groups(r"3\,600\,000 J"), _without_groups("3; 600")
+    ('3600000   J', '3600000     J', '3; 600')
+    """
+    for found in _THOUSANDS.finditer(text):
+        groups = found.group().split(",")
+        if not any(group.startswith("0") for group in groups[1:]):
+            whole, apart = "".join(groups), "; ".join(groups)
+            reason = f"is {found.group()} the number {whole}, or {len(groups)} values?"
+            raise LanguageError(text, found.start() + 1, reason, f"write {whole}, or {apart}")
+    text = _THOUSANDS.sub(lambda found: found.group().replace(",", "").ljust(len(found.group())), text)
+    return _GROUPS.sub(lambda found: re.sub("[^0-9]", "", found.group()).ljust(len(found.group())), text)
 
 
 def _plain_signs(text: str, scope: Scope) -> str:

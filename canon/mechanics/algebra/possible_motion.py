@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 
 from canon.mechanics.algebra.substitution import substitute, symbols_of
+from canon.proof.analytic import proved_sign
 from canon.proof.continuity.continuity import continuity
 from canon.proof.continuity.jumps import shown
 from canon.proof.continuity.one_sided import cuts_of
@@ -62,7 +63,8 @@ def where_real(functions: Sequence[Expr], domain: Domain) -> Domain:
         for part in parts
         if isinstance(part, sp.log) or (part.args[1].is_Rational and sp.fraction(part.args[1])[1] % 2 == 0)
     )
-    bounds = [sp.Gt(f, 0) for f in inside if f.is_extended_real and not f.is_nonnegative]
+    open_ = [f for f in inside if f.is_extended_real and not proved_sign(f, domain).endswith("+")]
+    bounds = [sp.Gt(f, 0) for f in open_]
     real = Domain((*domain.conditions, *(c for c in bounds if c not in (sp.true, sp.false))), domain.box)
     symbols = {s for f in functions for s in symbols_of(f)}
     return real if bounds and next(iter(real.points(symbols, 1)), None) is not None else domain

@@ -118,6 +118,10 @@ def continuity(
         step = _step(part, moving, domain, deadline)
         if step is not None:
             return _failed(name, step)
+    for part in _parts([*rough, *excused], moving) if excused else ():
+        step = _step(part, moving, domain, deadline, _gaps_of([*excused], moving, domain))
+        if step is not None:
+            return _failed(name, step)
     if found.holds and rough and time.monotonic() > deadline:
         why = f"whether {name} jumps was not decided in {budget:g} s"
         return Verdict(Status.UNDECIDED, found.question, evidence=(Evidence("open", why),), feedback=why)
@@ -258,15 +262,29 @@ def _groups(terms: Sequence[Expr], moving: Sequence[Symbol]) -> Iterator[list[Ex
         yield group
 
 
-def _step(f: Expr, moving: Sequence[Symbol], domain: Domain, deadline: float) -> _Fault | None:
-    """Return two points of one piece of the domain between which a locally constant function changes."""
+def _gaps_of(terms: Sequence[Expr], moving: Sequence[Symbol], domain: Domain) -> list[Expr]:
+    """Return the surfaces at which terms jump."""
+    return list(
+        {cut.gap: None for term in terms for cut in _open_cuts(term, moving, domain) if not cut.bends}
+    )
+
+
+def _step(
+    f: Expr, moving: Sequence[Symbol], domain: Domain, deadline: float, borders: Sequence[Expr] = ()
+) -> _Fault | None:
+    """Return two points of one piece of the domain between which a locally constant function changes.
+
+    The domain comes to pieces where one of the ``borders`` vanishes, which have to be planes.
+    """
+    if any(border.diff(x).has(*moving) for border in borders for x in moving):
+        return None
     left = deadline - time.monotonic()
     if left <= 0 or not is_locally_constant(f, moving, domain, SHARE * left):
         return None
     cases = [c for c in parts_of(domain.conditions) if isinstance(c, sp.Ne)]
     if not domain.is_connected(free_symbols(f)) or not all(map(linear, cases)):
         return None
-    gaps = [*(cast("Expr", c.lhs) - cast("Expr", c.rhs) for c in cases), *_nonzero(f, moving)]
+    gaps = [*(cast("Expr", c.lhs) - cast("Expr", c.rhs) for c in cases), *_nonzero(f, moving), *borders]
     points = domain.points(free_symbols(f), VALUES, deadline=deadline)
     first = next(((p, ball) for p in points if (ball := _ball(f, p)) is not None), None)
     if first is None:

@@ -76,11 +76,8 @@ def complete_integral(reading: Reading) -> Iterator[Question]:
         for (a, f), (b, g) in combinations(zip(q, slopes, strict=True), 2)
         if name == "gradient"
     ]
-    yield Same(
-        tuple(parts),
-        where_real((*slopes, *([] if whole is None else [whole])), reading.domain),
-        _no_answer,
-    )
+    real = where_real((*slopes, *([] if whole is None else [whole])), reading.domain)
+    yield Same(tuple(parts), real, _no_answer)
     yield Regular(
         sp.Matrix([[f.diff(c) for c in constants] for f in slopes]),
         "∂²W/∂q∂α",
@@ -89,9 +86,9 @@ def complete_integral(reading: Reading) -> Iterator[Question]:
     )
     variables = (*q, *constants, t)
     if whole is not None:
-        yield is_continuous(whole, variables, reading.domain, name, (H,))
+        yield is_continuous(whole, variables, real, name, (H,))
     for x, slope in zip(p, slopes, strict=True):
-        yield is_continuous(slope, variables, reading.domain, f"{x} = ∂W/∂q", (H,))
+        yield is_continuous(slope, variables, real, f"{x} = ∂W/∂q", (H,))
     for verdict in motion_is_real(dict(zip(p, slopes, strict=True)), reading.domain):
         yield (
             replace(verdict, feedback="a momentum p = ∂W/∂q is not real there") if verdict.fails else verdict

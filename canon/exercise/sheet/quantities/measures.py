@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from canon.expression.text.scope import Scope
 
-__all__ = ["BASE_UNITS", "UNIT", "Measure", "measure_like", "measure_of", "unit_behind"]
+__all__ = ["BASE_UNITS", "DEGREES", "UNIT", "Measure", "measure_like", "measure_of", "unit_behind"]
 
 _PREFIXES = {"": 0, "T": 12, "G": 9, "M": 6, "k": 3, "h": 2, "d": -1, "c": -2, "m": -3, "µ": -6, "μ": -6, "u": -6,
              "n": -9, "p": -12}  # fmt: skip
@@ -59,6 +59,8 @@ _SYMBOL = re.compile(
     r"|(?P<sign>.)",
     re.DOTALL,
 )
+DEGREES = re.compile(r"(?:°|\bdeg)\s?[CFR](?![A-Za-z])")
+"""Degrees of Celsius, Fahrenheit, Réaumur, which do not count from zero: no factor leads to kelvins."""
 _SMALL = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
 _SIUNITX = re.compile(
     r"\\(?:SI|qty)\s*\{(?P<number>[^{}]{1,60})\}\s*\{(?P<unit>[^{}]{1,80}(?:\{[^{}]{0,5}\}[^{}]{0,20}){0,4})\}\s*\$?\s*$"
@@ -130,10 +132,13 @@ def measure_of(unit: str) -> Measure | None:
     --------
     >>> measure_of("N m") == measure_of(r"\mathrm{kg\,m^2/s^2}") == measure_of("J"), measure_of("furlong")
     (True, None)
+    >>> measure_of("°C") is None  # does not count from zero
+    True
     """
     if len(unit) > _MOST:
         return None
-    written = _named_powers(_without_latex(unit))
+    plain = _without_latex(unit)
+    written = None if DEGREES.search(plain) else _named_powers(plain)
     if written is None:
         return None
     named = [part for name, power in written for part in _apart(name, power)]
