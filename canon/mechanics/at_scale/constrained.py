@@ -113,15 +113,13 @@ def constrained(
         rows.append(row)
         rests.extend(graph.substitute([node], at_rest))
     _check_independent(equations, rows, (*holonomic, *nonholonomic))
-    curvatures = tuple(
-        graph.add(
-            (
-                *(graph.mul((_rate(equations, a), graph.symbol(s))) for a, s in zip(row, v, strict=True)),
-                _rate(equations, rest),
-            )
-        )
+    speeds = [graph.symbol(s) for s in v]
+    rates = [
+        graph.add((*(graph.mul((a, u)) for a, u in zip(row, speeds, strict=True)), rest))
         for row, rest in zip(rows, rests, strict=True)
-    )
+    ]
+    along = {**dict(zip(q, speeds, strict=True)), t: graph.one}
+    curvatures = tuple(graph.directional(rates, along))
     return ConstrainedEquations(equations, values, tuple(rows), tuple(rests), curvatures)
 
 
@@ -249,11 +247,3 @@ _NEAR = 1e-8
 
 def _solved(matrix: Array, right: Array) -> Array:
     return solved(matrix, right, "the matrix of masses and constraints")
-
-
-def _rate(equations: SecondOrderEquations, node: int) -> int:
-    """Return the rate of a function of q and t."""
-    graph = equations.graph
-    moving = zip(equations.q, equations.velocities, strict=True)
-    terms = [graph.mul((graph.derivative(node, s), graph.symbol(w))) for s, w in moving]
-    return graph.add((*terms, graph.derivative(node, equations.t)))

@@ -105,8 +105,8 @@ def _nonholonomic(
         masses=tuple(masses),
         turning=tuple(
             tuple(
-                graph.add((graph.derivative(p, s), graph.negative(graph.derivative(f, u))))
-                for s, u in zip(q, v, strict=True)
+                graph.add((a, graph.negative(b)))
+                for a, b in zip(graph.gradient(p, q), graph.gradient(f, v), strict=True)
             )
             for p, f in zip(momenta, pull, strict=True)
         ),
