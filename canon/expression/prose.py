@@ -33,7 +33,7 @@ _VOCABULARY = frozenset((
     "pendulum", "spring", "mass", "length", "gravity", "gravitational", "acceleration", "angular", "frequency",
     "natural", "velocity", "speed", "time", "radius", "angle", "angles", "well", "known", "standard", "usual",
     "required", "desired", "new", "transformed", "corresponding", "order", "differential", "ordinary",
-    "dynamics", "ode", "eom", "denotes", "denote", "called", "for", "every", "any", "der", "die", "das", "den",
+    "dynamics", "ode", "eom", "eq", "eqs", "eqn", "eqns", "sol", "soln", "ans", "denotes", "denote", "called", "for", "every", "any", "der", "die", "das", "den",
     "dem", "des", "ein", "eine", "ist", "sind", "lautet", "lauten", "somit", "daher", "damit", "daraus", "dies",
     "dieses", "folgt", "ergibt", "erhält", "erhalten", "man", "wir", "sich", "bewegungsgleichung",
     "bewegungsgleichungen", "gleichung", "gleichungen", "lösung", "antwort", "ergebnis", "energie",
@@ -54,7 +54,7 @@ _LEADING = frozenset((
 """Words that a formula may follow."""
 _MARKS = re.compile(r"\s*(?:(?:[>✅☑✔→⟶•▪⇒⟹∴]|=>|-{1,2}>|<=>|#{1,6}(?=\s))\s*)*(?:\*\*(?=[^\W\d_]{2}))?")
 _BULLET = re.compile(r"\s*[-*]\s+")
-_WORD = r"(?:[^\W\d_]{2,}(?:['’][^\W\d_]{1,9})?(?:[.-][^\W\d_]+)*|[^\W\d_](?!['’]))"
+_WORD = r"(?:(?:[Ee]qn?s?|[Ss]oln?|[Aa]ns)\.(?=[ :])|[^\W\d_]{2,}(?:['’][^\W\d_]{1,9})?(?:[.-][^\W\d_]+)*|[^\W\d_](?!['’]))"
 _HEADING = re.compile(
     rf"(?P<words>{_WORD}(?:[ ,]{{1,3}}{_WORD}){{0,7}})(?: ?\(?\d{{1,2}}\)?)?[*_]{{0,2}}"
     r"(?: ?:(?![=:])[*_]{0,2}(?=[\s$\\(*])|\s*\n)\s*"
@@ -173,6 +173,6 @@ def is_prose(said: list[str], scope: Scope) -> bool:
     >>> [is_prose(text.split(), Scope()) for text in ("equation of motion", "twice the energy", "Hooke's law", "")]
     [True, False, True, False]
     """
-    plain = [re.sub(r"['’]s$", "", word) for word in said]
+    plain = [re.sub(r"['’]s$|\.$", "", word) for word in said]
     known = all(word.lower() in _VOCABULARY for each in plain for word in each.split("-"))
     return bool(said) and known and not any(w in scope.functions or scope.declares(w) for w in plain)

@@ -78,6 +78,7 @@ PAIRS = [
     (r"\frac12 m \dot x^2 + \frac1{2} k x^2 + \frac{1}2a", "m*x_dot**2/2 + k*x**2/2 + a/2"),
     (r"\sqrt{x^2+y^2}", "sqrt(x**2 + y**2)"),
     (r"\sqrt2 + \sqrt x", "sqrt(2) + sqrt(x)"),
+    (r"√(2x)\, x^{2} + √{x}", "sqrt(2*x)*x**2 + sqrt(x)"),
     (r"\sqrt[3]{a}", "a**(1/3)"),
     (r"x^{n+1} + x^n", "x**(n+1) + x**n"),
     (r"x^{-1} + x^\frac12", "1/x + x**(1/2)"),

@@ -352,7 +352,10 @@ class _Reader:
             self.out.emit("CCOLUMN", "&", column)
         elif character in SIGNS:
             self.at += 1
-            self.out.emit(SIGNS[character], character, column)
+            if character == "√" and self.follows("("):
+                self.put([Function("sqrt", column)], column)
+            else:
+                self.out.emit(SIGNS[character], character, column)
         elif fraction := figure(character):
             self.at += 1
             above, below = (Number(number, 1, column) for number in fraction)
