@@ -33,7 +33,8 @@ _VOCABULARY = frozenset((
     "pendulum", "spring", "mass", "length", "gravity", "gravitational", "acceleration", "angular", "frequency",
     "natural", "velocity", "speed", "time", "radius", "angle", "angles", "well", "known", "standard", "usual",
     "required", "desired", "new", "transformed", "corresponding", "order", "differential", "ordinary",
-    "dynamics", "ode", "eom", "eq", "eqs", "eqn", "eqns", "sol", "soln", "ans", "denotes", "denote", "called", "for", "every", "any", "der", "die", "das", "den",
+    "eq", "eqs", "eqn", "eqns", "sol", "soln", "ans", "dynamics", "ode", "eom",
+    "denotes", "denote", "called", "for", "every", "any", "der", "die", "das", "den",
     "dem", "des", "ein", "eine", "ist", "sind", "lautet", "lauten", "somit", "daher", "damit", "daraus", "dies",
     "dieses", "folgt", "ergibt", "erhält", "erhalten", "man", "wir", "sich", "bewegungsgleichung",
     "bewegungsgleichungen", "gleichung", "gleichungen", "lösung", "antwort", "ergebnis", "energie",
@@ -54,7 +55,10 @@ _LEADING = frozenset((
 """Words that a formula may follow."""
 _MARKS = re.compile(r"\s*(?:(?:[>✅☑✔→⟶•▪⇒⟹∴]|=>|-{1,2}>|<=>|#{1,6}(?=\s))\s*)*(?:\*\*(?=[^\W\d_]{2}))?")
 _BULLET = re.compile(r"\s*[-*]\s+")
-_WORD = r"(?:(?:[Ee]qn?s?|[Ss]oln?|[Aa]ns)\.(?=[ :])|[^\W\d_]{2,}(?:['’][^\W\d_]{1,9})?(?:[.-][^\W\d_]+)*|[^\W\d_](?!['’]))"
+_WORD = (
+    r"(?:(?:[Ee]qn?s?|[Ss]oln?|[Aa]ns)\.(?=[ :])"
+    r"|[^\W\d_]{2,}(?:['’][^\W\d_]{1,9})?(?:[.-][^\W\d_]+)*|[^\W\d_](?!['’]))"
+)
 _HEADING = re.compile(
     rf"(?P<words>{_WORD}(?:[ ,]{{1,3}}{_WORD}){{0,7}})(?: ?\(?\d{{1,2}}\)?)?[*_]{{0,2}}"
     r"(?: ?:(?![=:])[*_]{0,2}(?=[\s$\\(*])|\s*\n)\s*"

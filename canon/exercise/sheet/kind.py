@@ -113,6 +113,8 @@ class Kind:
         Whether what is claimed is that two sides are the same, in symbols that are all alike.
     varying
         Keys whose expressions say nothing where they do not depend on the variables.
+    quadratures
+        Keys of functions that may hold integrals over a coordinate without limits.
     derived
         Whether what is compared are derivatives of the answer, so that a component is no answer to tell.
     repaired
@@ -144,6 +146,7 @@ class Kind:
     following: tuple[str, ...] = ("momenta", "multipliers")
     two_sided: bool = False
     varying: tuple[str, ...] = ()
+    quadratures: tuple[str, ...] = ()
     derived: bool = False
     repaired: tuple[str, ...] = ()
     screen: str = ""

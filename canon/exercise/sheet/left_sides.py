@@ -26,6 +26,7 @@ __all__ = [
     "Quantity",
     "components_asked",
     "has_primes",
+    "is_action",
     "is_asked",
     "is_definition",
     "is_of_another",
@@ -73,6 +74,10 @@ _DEFINITIONS: Mapping[str, str] = {
     "S": r"[^=]*[Σ∑][^=]*",
     "I": r"[TK]\+[VU]|[VU]\+[TK]",
 }
+_ACTION = re.compile(
+    r"\s*\$?\s*(?:\\int|∫)\s*p(?:_\\?\w{1,9}|_\{\\?\w{1,9}\})?(?:\s|\\[,;: ])*"
+    r"(?:\\mathrm\s?\{d\}|\\dd|d)\s*\\?\w{1,9}\s*\$?\s*"
+)
 _OF_ANY = r"[-−+]?∂[HLFKSRVUW][_0-9]{0,3}/∂[^-−+=∂*/(){}\[\]]{1,20}|\{[^={}]{1,20},H\}"
 """Derivatives of functions that are not given, and the bracket with H."""
 
@@ -286,6 +291,17 @@ def is_definition(said: str, key: str, scope: Scope) -> bool:
     if re.fullmatch(_OF_ANY, said):
         return not any(name in scope.functions for name in names)
     return re.fullmatch(_DEFINITIONS.get(key, "(?!)"), said) is not None
+
+
+def is_action(text: str) -> bool:
+    r"""Tell whether a side is ``∫ p dq``, what Hamilton's characteristic function is.
+
+    Examples
+    --------
+    >>> is_action(r"$\int p_x\,\mathrm{d}x$"), is_action("∫ p dq"), is_action("∫ x dx")
+    (True, True, False)
+    """
+    return _ACTION.fullmatch(text) is not None
 
 
 def is_of_another(said: str) -> bool:

@@ -27,6 +27,7 @@ PERTURBED: Mapping[str, Kind] = MappingProxyType(
             exclusive=True,
             answer=("W", "S", "gradient"),
             unknowns="an integral with as many independent constants as there are coordinates",
+            quadratures=("W", "S"),
             derived=True,
             repaired=("W", "S", "gradient"),
             screen="by_question",

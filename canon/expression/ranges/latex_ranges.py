@@ -11,7 +11,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from canon.expression.ranges.range_of_call import INTEGRAL, PRODUCT, SUM
+from canon.expression.ranges.range_of_call import INTEGRAL, LIMITS_ARE_MISSING, PRODUCT, SUM
 from canon.expression.text.syntax import MAX_NESTING, Call, LanguageError, Name, Node, Product, Sum, Tuple
 
 if TYPE_CHECKING:
@@ -41,12 +41,11 @@ _NUMBER = re.compile(r"\s*(\d+)\s*")
 
 @dataclass(frozen=True, slots=True)
 class _Operator:
-    """An integral, sum or product sign with the places of its limits, and where they end."""
+    """An integral, sum or product sign with the places of its limits, and where they end; an integral may have none."""
 
     sign: str
     at: int
-    lower: tuple[int, int]
-    upper: tuple[int, int]
+    limits: tuple[tuple[int, int], ...]
     end: int
 
 
@@ -97,11 +96,11 @@ def _operator(text: str, match: re.Match[str], end: int) -> _Operator:
                 text, script.start() + 1, f"a second {script[1]}", "write one lower and one upper limit"
             )
         limits[script[1]] = (begin, stop)
-    if len(limits) < 2:
+    if len(limits) < 2 and (sign != INTEGRAL or limits):
         what = r"\int_{0}^{a} f\,dx" if sign == INTEGRAL else r"\sum_{i=1}^{3} f"
-        reason = f"{match.group()} needs a lower and an upper limit here"
+        reason = f"{match.group()} {LIMITS_ARE_MISSING}"
         raise LanguageError(text, match.start() + 1, reason, f"write {what}, or the value")
-    return _Operator(sign, match.start(), limits["_"], limits["^"], at)
+    return _Operator(sign, match.start(), tuple(limits[script] for script in "_^" if script in limits), at)
 
 
 def _argument(text: str, at: int, end: int) -> tuple[int, int, int]:
@@ -132,10 +131,9 @@ def _integral(text: str, operator: _Operator, end: int, read: _Read) -> tuple[No
             raise LanguageError(text, at + 1, f"more than {MOST_NESTED} integrals in one", "split the claim")
         depth += sign.lstrip("\\").endswith(("(", "[", "{")) - sign.lstrip("\\").endswith((")", "]", "}"))
         at = found.end() if found else at + len(sign)
-    reason = "this integral has no differential outside brackets"
-    raise LanguageError(
-        text, operator.at + 1, reason, r"write \int_{0}^{a} f\,dx, the differential at the end"
-    )
+    lacks = "has no differential outside brackets" if operator.limits else LIMITS_ARE_MISSING
+    remedy = r"write \int_{0}^{a} f\,dx, the differential at the end"
+    raise LanguageError(text, operator.at + 1, f"this integral {lacks}", remedy)
 
 
 def _integrated(text: str, operator: _Operator, differential: re.Match[str], read: _Read) -> Node:
@@ -159,7 +157,7 @@ def _integrated(text: str, operator: _Operator, differential: re.Match[str], rea
     one = text[: operator.end] + "1" + text[operator.end + 1 :]
     source, last = (one, operator.end + 1) if bare else (text, differential.start())
     integrand = read(source, operator.end, last, variable.text)
-    bounds = (read(text, *operator.lower, ""), read(text, *operator.upper, ""))
+    bounds = (read(text, *limit, "") for limit in operator.limits)
     return Call(INTEGRAL, (integrand, Tuple((variable, *bounds), begin + 1)), operator.at + 1)
 
 
@@ -172,12 +170,12 @@ def _goes_on(text: str, at: int) -> bool:
 
 def _sum(text: str, operator: _Operator, end: int, read: _Read) -> tuple[Node, int]:
     """Return the tree of a sum or product, its terms one by one, and where it ends."""
-    index = _INDEX.fullmatch(text, *operator.lower)
-    last = _NUMBER.fullmatch(text, *operator.upper)
+    index = _INDEX.fullmatch(text, *operator.limits[0])
+    last = _NUMBER.fullmatch(text, *operator.limits[1])
     if index is None or last is None or int(last[1]) > MOST_FIGURES or int(index[2]) > int(last[1]):
         reason = f"the limits of a sum are numbers up to {MOST_FIGURES} here"
         raise LanguageError(
-            text, operator.lower[0] + 1, reason, r"write \sum_{i=1}^{3}, or the terms one by one"
+            text, operator.limits[0][0] + 1, reason, r"write \sum_{i=1}^{3}, or the terms one by one"
         )
     stop = _end_of_term(text, operator.end, end)
     if within := re.compile(r"\\(?:sum|prod|int)|[∫∑∏]").search(text, operator.end, stop):

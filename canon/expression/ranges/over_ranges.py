@@ -5,19 +5,23 @@ from __future__ import annotations
 from functools import reduce
 from typing import TYPE_CHECKING, NoReturn, Protocol
 
+import sympy as sp
+
 from canon.expression.ranges.definite_integrals import definite_integral
 from canon.expression.ranges.integrand_values import part_without_value
 from canon.expression.ranges.range_of_call import (
     INTEGRAL,
+    LIMITS_ARE_MISSING,
     PRODUCT,
     SUM,
     Range,
     name_with_index_inside,
     ranges,
     with_index,
+    without_bounds,
 )
-from canon.expression.symbols.symbol import Coordinate, Momentum
-from canon.expression.text.syntax import Call, Name, Product, Sum, parts
+from canon.expression.symbols.symbol import Coordinate, Momentum, Rate
+from canon.expression.text.syntax import Call, Name, Product, Sum, Tuple, parts
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -55,6 +59,11 @@ def over_ranges(builder: _Builder, node: Call) -> Expr:
     """
     operand = node.arguments[0]
     found: Sequence[Range] = ranges(node.arguments[1:])
+    variable = without_bounds(node.arguments[1:]) if node.function == INTEGRAL else None
+    if variable is not None and builder.scope.quadratures:
+        return _quadrature(builder, variable, operand)
+    if variable is not None and isinstance(node.arguments[1], Tuple):
+        builder.refuse(node, f"this integral {LIMITS_ARE_MISSING}", r"write \int_{0}^{a} f\,dx, or the value")
     if not found or (node.function != INTEGRAL and len(found) > 1):
         builder.refuse(
             node, f"{node.function} takes a variable and two bounds", f"write {node.function}(f, (x, 0, a))"
@@ -99,6 +108,24 @@ def _integrated(builder: _Builder, node: Call, operand: Node, found: Sequence[Ra
             builder.refuse(node, reason, "write its value, as a function of its ends")
         value = whole
     return value
+
+
+def _quadrature(builder: _Builder, variable: Name, operand: Node) -> Expr:
+    """Return an integral over a coordinate without limits, whose derivative by it is what is integrated.
+
+    Nothing else that moves may stand in it, or its derivative by that would not be known.
+    """
+    x, f = builder.scope.symbol(variable.text), builder.expression(operand)
+    if variable.primes or not isinstance(x, Coordinate):
+        builder.refuse(variable, "an integral without limits is over a coordinate", "write its limits")
+    others = {
+        s for s in f.free_symbols if isinstance(s, Coordinate | Momentum | Rate) or s == builder.scope.time
+    }
+    if (moving := sorted(map(str, others - {x}))) or f.has(sp.Integral):
+        held = moving[0] if moving else "an integral"
+        reason = f"an integral over {x} without limits holds {held} too, by which its derivative is not known"
+        builder.refuse(operand, reason, "write its value")
+    return sp.Integral(f, x)
 
 
 def _refuse_what_moves(builder: _Builder, operand: Node, found: Sequence[Range]) -> None:

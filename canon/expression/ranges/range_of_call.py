@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "INTEGRAL",
+    "LIMITS_ARE_MISSING",
     "PRODUCT",
     "SUM",
     "Range",
@@ -31,9 +32,11 @@ __all__ = [
     "name_with_index_inside",
     "ranges",
     "with_index",
+    "without_bounds",
 ]
 
 INTEGRAL, SUM, PRODUCT = "Integral", "Sum", "Product"
+LIMITS_ARE_MISSING = "needs a lower and an upper limit here"
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +56,15 @@ def ranges(arguments: Sequence[Node]) -> tuple[Range, ...]:
         case _:
             found = tuple(_of_tuples(arguments))
             return found if len(found) == len(arguments) else ()
+
+
+def without_bounds(arguments: Sequence[Node]) -> Name | None:
+    """Return the variable of an integral without limits, ``∫ f dx`` or ``Integral(f, x)``; None for any other."""
+    match arguments:
+        case (Name() as variable,) | (Tuple((Name() as variable,)),):
+            return variable
+        case _:
+            return None
 
 
 def _of_tuples(arguments: Sequence[Node]) -> Iterator[Range]:

@@ -52,6 +52,8 @@ class Scope:
     values
         What names and rates abbreviate, as they are written here: every operation acts on the value, ``∂V/∂x`` too.
         None where a name has none.
+    quadratures
+        Whether an integral over a coordinate may have no limits, as in W = ∫ √(2m(E − V)) dx.
 
     Examples
     --------
@@ -70,6 +72,7 @@ class Scope:
     moving: frozenset[str] = frozenset()
     other_names: Mapping[str, Symbol] = field(default_factory=lambda: MappingProxyType({}))
     values: Mapping[str, Expr | None] = field(default_factory=lambda: MappingProxyType({}))
+    quadratures: bool = False
 
     def __hash__(self) -> int:
         return hash(
@@ -80,6 +83,7 @@ class Scope:
                 self.implicit,
                 self.moving,
                 frozenset(self.other_names.items()),
+                self.quadratures,
             )
         )
 

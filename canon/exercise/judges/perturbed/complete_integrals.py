@@ -60,6 +60,7 @@ def complete_integral(reading: Reading) -> Iterator[Question]:
         return
     whole = None if name == "gradient" else reading.expression(name)
     slopes = reading.expressions("gradient", like="q") if whole is None else tuple(map(whole.diff, q))
+    rest = None if whole is None else _without_quadratures(reading, whole, name, slopes)
     for f in slopes if whole is None else (whole,):
         wrong = tuple(wrong_variables(f, (*p, *((t,) if name != "S" else ())), name, _variables_of(name)))
         if wrong:
@@ -76,7 +77,7 @@ def complete_integral(reading: Reading) -> Iterator[Question]:
         for (a, f), (b, g) in combinations(zip(q, slopes, strict=True), 2)
         if name == "gradient"
     ]
-    real = where_real((*slopes, *([] if whole is None else [whole])), reading.domain)
+    real = where_real((*slopes, *([] if rest is None else [rest])), reading.domain)
     yield Same(tuple(parts), real, _no_answer)
     yield Regular(
         sp.Matrix([[f.diff(c) for c in constants] for f in slopes]),
@@ -85,14 +86,23 @@ def complete_integral(reading: Reading) -> Iterator[Question]:
         "the constants are not independent: det ∂²W/∂q∂α = 0, so the integral is not complete",
     )
     variables = (*q, *constants, t)
-    if whole is not None:
-        yield is_continuous(whole, variables, real, name, (H,))
+    if rest is not None:
+        yield is_continuous(rest, variables, real, name, (H,))
     for x, slope in zip(p, slopes, strict=True):
         yield is_continuous(slope, variables, real, f"{x} = ∂W/∂q", (H,))
     for verdict in motion_is_real(dict(zip(p, slopes, strict=True)), reading.domain):
         yield (
             replace(verdict, feedback="a momentum p = ∂W/∂q is not real there") if verdict.fails else verdict
         )
+
+
+def _without_quadratures(reading: Reading, whole: Expr, name: str, slopes: Sequence[Expr]) -> Expr:
+    """Return W or S without its terms c ∫ f dx, which are continuous: as c is a constant, their slopes are c f."""
+    if any(slope.has(sp.Integral) for slope in (*slopes, whole.diff(reading.time))):
+        reading.fault(
+            name, "what stands beside an integral without limits, as its factor, has to be a constant"
+        )
+    return whole.xreplace(dict.fromkeys(whole.atoms(sp.Integral), sp.S.Zero))
 
 
 def _check_constants(reading: Reading, H: Expr, constants: Sequence[Symbol]) -> None:

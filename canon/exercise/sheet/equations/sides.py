@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from canon.exercise.sheet.left_sides import is_definition, label_of
+from canon.exercise.sheet.left_sides import is_action, is_definition, label_of
 from canon.exercise.sheet.quantities.given_functions import GivenFunctions, key_at
 from canon.expression.parse import LanguageError, parse_expression, statements_of
 
@@ -68,6 +68,8 @@ class Sides:
 
     def is_origin(self, place: str, side: Side, asked: str) -> bool:
         """Tell whether a side says where a formula comes from: of functions, given or not."""
+        if asked in ("W", "S") and is_action(side.text):
+            return True
         return (
             is_definition(side.said, asked, self.scope) or self.given(place).worked_out(side.said) is not None
         )
