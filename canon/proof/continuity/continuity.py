@@ -276,15 +276,12 @@ def _step(
 
     The domain comes to pieces where one of the ``borders`` vanishes, which have to be planes.
     """
-    if any(border.diff(x).has(*moving) for border in borders for x in moving):
-        return None
     left = deadline - time.monotonic()
     if left <= 0 or not is_locally_constant(f, moving, domain, SHARE * left):
         return None
-    cases = [c for c in parts_of(domain.conditions) if isinstance(c, sp.Ne)]
-    if not domain.is_connected(free_symbols(f)) or not all(map(linear, cases)):
+    gaps = _planes(f, moving, domain, borders)
+    if gaps is None:
         return None
-    gaps = [*(cast("Expr", c.lhs) - cast("Expr", c.rhs) for c in cases), *_nonzero(f, moving), *borders]
     points = domain.points(free_symbols(f), VALUES, deadline=deadline)
     first = next(((p, ball) for p in points if (ball := _ball(f, p)) is not None), None)
     if first is None:
@@ -298,6 +295,15 @@ def _step(
             if ball is not None and not (ball - first[1]).contains(0):
                 return _between(first, (point, ball))
     return None
+
+
+def _planes(f: Expr, moving: Sequence[Symbol], domain: Domain, borders: Sequence[Expr]) -> list[Expr] | None:
+    """Return what vanishes where the domain comes to pieces, all of them planes; None where others part it too."""
+    cases = [c for c in parts_of(domain.conditions) if isinstance(c, sp.Ne)]
+    curved = any(border.diff(x).has(*moving) for border in borders for x in moving)
+    if curved or not domain.is_connected(free_symbols(f)) or not all(map(linear, cases)):
+        return None
+    return [*(cast("Expr", c.lhs) - cast("Expr", c.rhs) for c in cases), *_nonzero(f, moving), *borders]
 
 
 def _in_one_piece(
