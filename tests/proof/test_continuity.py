@@ -45,7 +45,8 @@ from canon.mechanics import is_gauge_equivalent
 from canon.mechanics.canonical.new_hamiltonian import is_new_hamiltonian
 from canon.mechanics.hamilton.symmetry import is_symmetry
 from canon.proof.analytic import is_analytic
-from canon.proof.continuity.continuity import continuity, is_locally_constant
+from canon.proof.continuity.constant_steps import is_locally_constant
+from canon.proof.continuity.continuity import continuity
 from canon.proof.continuity.one_sided import cuts_of
 from canon.proof.continuity.turns_of_angles import continuity_but_for_turns
 from canon.proof.continuity.winding_centre import common_zero

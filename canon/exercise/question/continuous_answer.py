@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from canon.exercise.question.deadline import PROOF_SECONDS
 from canon.exercise.question.question import fails
-from canon.proof.continuity.continuity import continuity, is_locally_constant
+from canon.proof.continuity.constant_steps import is_locally_constant
+from canon.proof.continuity.continuity import continuity
 from canon.proof.continuity.turns_of_angles import continuity_but_for_turns
 
 if TYPE_CHECKING:

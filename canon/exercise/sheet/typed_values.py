@@ -120,14 +120,7 @@ def typed_values(text: str, scope: Scope, *, measured: bool, name: str = "") -> 
     >>> [value.text.strip() for value in typed_values("x = 1 ± sqrt(2) or x = 7/2 = 3.5", Scope(), measured=False)[0]]
     ['1 + sqrt(2)', '1 - sqrt(2)', '7/2', '3.5']
     """
-    found = _COMMA.search(text)
-    if found and text.count("{", 0, found.start()) + text.count("(", 0, found.start()) == 0:
-        whole, _, part = found.group().partition(",")
-        reason = f"is {found.group()} the decimal {whole}.{part}, or two values?"
-        raise LanguageError(text, found.start() + 1, reason, f"write {whole}.{part}, or {whole}; {part}")
-    if measured and (degrees := DEGREES.search(text)):
-        reason = f"{degrees.group()} is no multiple of a unit: it does not count from zero"
-        raise LanguageError(text, degrees.start() + 1, reason, "write the temperature in K")
+    _refuse_doubtful_figures(text, measured=measured)
     text = _STOP.sub("", _plain_signs(unmarked(_without_groups(text)), scope))
     if text.count(",") + text.count(";") > MOST_VALUES:
         raise LanguageError(text, 1, f"more than {MOST_VALUES} values", "split the claim")
@@ -203,6 +196,18 @@ def signed_tables(place: str, table: Mapping[str, Any], fault: _Fault) -> list[M
         told = f"is ± of {two[0]} and of {two[1]} chosen together, or each by itself?"
         raise fault(place, LanguageError(text, 1, told, "write the tables one by one"))
     return [{**table, two[0]: text} for text in signed[two[0]]] if two else [table]
+
+
+def _refuse_doubtful_figures(text: str, *, measured: bool) -> None:
+    """Refuse a comma that is a decimal point or parts two values, and degrees that do not count from zero."""
+    found = _COMMA.search(text)
+    if found and text.count("{", 0, found.start()) + text.count("(", 0, found.start()) == 0:
+        whole, _, part = found.group().partition(",")
+        reason = f"is {found.group()} the decimal {whole}.{part}, or two values?"
+        raise LanguageError(text, found.start() + 1, reason, f"write {whole}.{part}, or {whole}; {part}")
+    if measured and (degrees := DEGREES.search(text)):
+        reason = f"{degrees.group()} is no multiple of a unit: it does not count from zero"
+        raise LanguageError(text, degrees.start() + 1, reason, "write the temperature in K")
 
 
 def _without_groups(text: str) -> str:

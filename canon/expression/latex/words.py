@@ -351,11 +351,7 @@ class _Reader:
             self.at += 1
             self.out.emit("CCOLUMN", "&", column)
         elif character in SIGNS:
-            self.at += 1
-            if character == "√" and self.follows("("):
-                self.put([Function("sqrt", column)], column)
-            else:
-                self.out.emit(SIGNS[character], character, column)
+            self.known_sign(character)
         elif fraction := figure(character):
             self.at += 1
             above, below = (Number(number, 1, column) for number in fraction)
@@ -384,6 +380,15 @@ class _Reader:
         elif not self.bracket(character, ""):
             shown = repr(character) if character.isascii() else f"{character!r} (U+{ord(character):04X})"
             self.refuse(column, f"{shown} is not part of a formula", remedy(character))
+
+    def known_sign(self, character: str) -> None:
+        """Read a sign of the grammar; √ before a bracket is the function."""
+        column = self.at + 1
+        self.at += 1
+        if character == "√" and self.follows("("):
+            self.put([Function("sqrt", column)], column)
+        else:
+            self.out.emit(SIGNS[character], character, column)
 
     def partial(self, match: re.Match[str]) -> None:
         r"""Read ``\partial_x``, ``\partial_x^2`` or ``\partial_{xy}``, a derivative that waits for its operand."""

@@ -9,14 +9,15 @@ continuous function has it, and such an angle is taken as it is.
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import combinations
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 
 from canon.proof.analytic import is_positive_between, is_uncut, proved_sign
-from canon.proof.continuity.jumps import Jump, continued, find_jump, shown
+from canon.proof.continuity.constant_steps import Fault, nonzero, step_between_pieces
+from canon.proof.continuity.jumps import Jump, continued, find_jump
 from canon.proof.continuity.one_sided import (
     Cut,
     cuts_of,
@@ -28,34 +29,27 @@ from canon.proof.continuity.one_sided import (
 )
 from canon.proof.continuity.smooth import PIECED
 from canon.proof.continuity.winding_centre import centre_of
-from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
-from canon.proof.domain.domain import EVERYWHERE, Domain, conditions_hold
+from canon.proof.domain.domain import EVERYWHERE, Domain
 from canon.proof.domain.reality import certainly_real
-from canon.proof.domain.relations import linear, parts_of
+from canon.proof.domain.relations import parts_of
 from canon.proof.domain.verdict import Counterexample, Evidence, Status, Verdict
-from canon.proof.kinks import vanishes_off_kinks
 from canon.proof.trees.anatomy import anatomy
 from canon.proof.trees.sympy_types import arguments, free_symbols
 from canon.proof.vanish import vanishes_where_defined
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
-    from flint import acb
     from sympy import Expr, Symbol
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["continuity", "is_locally_constant"]
+__all__ = ["continuity"]
 
 CONTINUOUS = "is continuous"
-VALUES = 24
-"""Points at which a locally constant function is evaluated."""
 LARGE = 2000
 """Size of an expression that is still multiplied out."""
 FEW = 4
 """Terms of which every sum is looked at."""
-SHARE = 0.5
-"""Part of the time for one question about derivatives."""
 
 
 def continuity(
@@ -114,12 +108,11 @@ def continuity(
     found = replace(found, assumed=(*found.assumed, *(text.format(name) for text in excused.values())))
     if found.fails:
         return found
-    for part in _parts(rough, moving):
-        step = _step(part, moving, domain, deadline)
-        if step is not None:
-            return _failed(name, step)
-    for part in _parts([*rough, *excused], moving) if excused else ():
-        step = _step(part, moving, domain, deadline, _gaps_of([*excused], moving, domain))
+    borders = _gaps_of([*excused], moving, domain)
+    both: list[tuple[Expr, Sequence[Expr]]] = [(part, ()) for part in _parts(rough, moving)]
+    both += [(part, borders) for part in _parts([*rough, *excused], moving)] if excused else []
+    for part, between in both:
+        step = step_between_pieces(part, moving, domain, deadline, between)
         if step is not None:
             return _failed(name, step)
     if found.holds and rough and time.monotonic() > deadline:
@@ -128,33 +121,7 @@ def continuity(
     return found
 
 
-def is_locally_constant(
-    f: Expr, variables: Iterable[Symbol], domain: Domain = EVERYWHERE, budget: float = 1.0
-) -> bool:
-    """Tell whether all derivatives of a function are proved to vanish, so that it is a number on each piece.
-
-    Examples
-    --------
-    >>> q = sp.Symbol("q", real=True)
-    >>> is_locally_constant(sp.atan(1 / q) + sp.atan(q), [q]), is_locally_constant(sp.atan(q), [q])
-    (True, False)
-    """
-    moving = [s for s in variables if f.has(s)]
-    slopes = [off_the_kinks(f.diff(s)) for s in moving]
-    return not moving or vanishes_off_kinks(sp.Matrix(slopes), domain, budget).holds
-
-
-@dataclass(frozen=True)
-class _Fault:
-    """Where a function jumps, and between which values."""
-
-    point: Mapping[str, str]
-    before: str
-    after: str
-    said: str
-
-
-def _failed(name: str, fault: _Fault) -> Verdict:
+def _failed(name: str, fault: Fault) -> Verdict:
     return Verdict(
         Status.FAILS,
         f"{name} {CONTINUOUS}",
@@ -269,79 +236,6 @@ def _gaps_of(terms: Sequence[Expr], moving: Sequence[Symbol], domain: Domain) ->
     )
 
 
-def _step(
-    f: Expr, moving: Sequence[Symbol], domain: Domain, deadline: float, borders: Sequence[Expr] = ()
-) -> _Fault | None:
-    """Return two points of one piece of the domain between which a locally constant function changes.
-
-    The domain comes to pieces where one of the ``borders`` vanishes, which have to be planes.
-    """
-    left = deadline - time.monotonic()
-    if left <= 0 or not is_locally_constant(f, moving, domain, SHARE * left):
-        return None
-    gaps = _planes(f, moving, domain, borders)
-    if gaps is None:
-        return None
-    points = domain.points(free_symbols(f), VALUES, deadline=deadline)
-    first = next(((p, ball) for p in points if (ball := _ball(f, p)) is not None), None)
-    if first is None:
-        return None
-    staying = {s: number for s, number in first[0].items() if s not in moving}
-    for point in ({**p, **staying} for p in points):
-        if not _in_one_piece(point, first[0], gaps, domain):
-            continue
-        ball = _ball(f, point)
-        with precision(128):
-            if ball is not None and not (ball - first[1]).contains(0):
-                return _between(first, (point, ball))
-    return None
-
-
-def _planes(f: Expr, moving: Sequence[Symbol], domain: Domain, borders: Sequence[Expr]) -> list[Expr] | None:
-    """Return what vanishes where the domain comes to pieces, all of them planes; None where others part it too."""
-    cases = [c for c in parts_of(domain.conditions) if isinstance(c, sp.Ne)]
-    curved = any(border.diff(x).has(*moving) for border in borders for x in moving)
-    if curved or not domain.is_connected(free_symbols(f)) or not all(map(linear, cases)):
-        return None
-    return [*(cast("Expr", c.lhs) - cast("Expr", c.rhs) for c in cases), *_nonzero(f, moving), *borders]
-
-
-def _in_one_piece(
-    point: Mapping[Symbol, sp.Rational],
-    other: Mapping[Symbol, sp.Rational],
-    gaps: Sequence[Expr],
-    domain: Domain,
-) -> bool:
-    return all(_is_above(g, point) == _is_above(g, other) for g in gaps) and domain.contains(point)
-
-
-def _ball(f: Expr, point: Mapping[Symbol, sp.Rational]) -> acb | None:
-    try:
-        with precision(128):
-            return value(f, point)
-    except (NotDecided, Undefined, Unmodelled):
-        return None
-
-
-def _is_above(gap: Expr, point: Mapping[Symbol, sp.Rational]) -> bool:
-    return conditions_hold([cast("Boolean", sp.Gt(gap, 0, evaluate=False))], point)
-
-
-def _nonzero(f: Expr, moving: Sequence[Symbol]) -> list[Symbol]:
-    return [s for s in moving if f.has(s) and s.is_nonzero and not s.is_positive and not s.is_negative]
-
-
-def _between(
-    first: tuple[Mapping[Symbol, sp.Rational], acb], second: tuple[Mapping[Symbol, sp.Rational], acb]
-) -> _Fault:
-    texts = [shown(ball) for _, ball in (first, second)]
-    other = ", ".join(f"{s} = {number}" for s, number in second[0].items())
-    point = {s.name: str(number) for s, number in first[0].items()}
-    here = ", ".join(f"{s} = {number}" for s, number in point.items())
-    said = f"jumps: a part of it with all derivatives zero is {texts[0]} at {here} and {texts[1]} at {other}"
-    return _Fault(point, texts[0], texts[1], said)
-
-
 def _excused(
     terms: Sequence[Expr], given: Iterable[Expr], moving: Sequence[Symbol], domain: Domain, deadline: float
 ) -> dict[Expr, str]:
@@ -409,9 +303,9 @@ def _in_full(
     return whole or jump
 
 
-def _fault_of(jump: Jump) -> _Fault:
+def _fault_of(jump: Jump) -> Fault:
     where = ", ".join(f"{x} = {place}" for x, place in jump.point.items())
-    return _Fault(jump.point, jump.before, jump.after, f"jumps at {where} from {jump.before} to {jump.after}")
+    return Fault(jump.point, jump.before, jump.after, f"jumps at {where} from {jump.before} to {jump.after}")
 
 
 def _is_at_one_of(angles: Sequence[Cut], cut: Cut) -> bool:
@@ -427,7 +321,7 @@ def _meets(f: Expr, cut: Cut, moving: Sequence[Symbol], domain: Domain, deadline
     change = continued(f, cut.gap, moving, up=True) - continued(f, cut.gap, moving, up=False)
     if change == 0:
         return True
-    plain: dict[Expr, Expr] = {s: sp.Dummy(s.name, real=True) for s in _nonzero(cut.gap, moving)}
+    plain: dict[Expr, Expr] = {s: sp.Dummy(s.name, real=True) for s in nonzero(cut.gap, moving)}
     kept = (c for c in parts_of(domain.conditions) if not isinstance(c, sp.Ne))
     on_gap = (*kept, cast("Boolean", sp.Eq(cut.gap, 0, evaluate=False)))
     there = Domain(tuple(cast("Boolean", c.xreplace(plain)) for c in on_gap))
