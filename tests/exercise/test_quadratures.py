@@ -96,3 +96,31 @@ def test_a_gradient_has_no_quadratures():
 def test_what_is_wrong_in_a_quadrature_is_told():
     found = judged(OSCILLATOR, W=r"\int\sqrt{2mE - 2m^2\omega^2x^2}\,dx")
     assert "the term -2*m**2*w**2*x**2 should be half that" in found.reasons[0]
+
+
+ACTION = {
+    "q": ["x"], "p": ["p"], "H": "p**2/(2*m) + m*w**2*x**2/2",
+    "parameters": {"m": "positive", "w": "positive", "E": "positive"},
+}  # fmt: skip
+
+
+def judged_action(J):
+    claim = claim_from({"id": "a", "kind": "action-angle", **ACTION, "J": [J]})
+    assert not claim.errors
+    return [judgement for judgement, _ in judgements(claim)][-1]
+
+
+@pytest.mark.parametrize(
+    "definition",
+    [r"J = \frac{1}{2\pi}\oint p\,dx", r"\frac1{2\pi} \int p\,\mathrm{d}x", "(1/2π)∮p dx", "1/(2π) ∮ p dx"],
+)
+def test_the_definition_of_an_action_before_its_value_is_passed_over(definition):
+    right = judged_action(f"{definition} = E/w")
+    assert right.status == "holds"
+    assert "is passed over" in right.warnings[0]
+    assert judged_action(f"{definition} = E/(2*w)").status == "fails"
+
+
+@pytest.mark.parametrize("other", ["J = ∮ p dx = E/w", "J = (1/4π) ∮ p dx = E/w", "J = (1/2π) ∮ p dx"])
+def test_another_definition_is_not(other):
+    assert judged_action(other).status == "invalid"

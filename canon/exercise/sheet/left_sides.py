@@ -75,7 +75,8 @@ _DEFINITIONS: Mapping[str, str] = {
     "I": r"[TK]\+[VU]|[VU]\+[TK]",
 }
 _ACTION = re.compile(
-    r"\s*\$?\s*(?:\\int|∫)\s*p(?:_\\?\w{1,9}|_\{\\?\w{1,9}\})?(?:\s|\\[,;: ])*"
+    r"\s*\$?\s*(?P<share>\\[dt]?frac\s?\{?1\}?\s?\{\s?2\s?\\pi\s?\}|\(?1/\(?2\s?\*?\s?(?:π|pi|\\pi)\)?\)?)?"
+    r"(?:\s|\\[,;: ]|\*)*(?:\\o?int|[∫∮])\s*p(?:_\\?\w{1,9}|_\{\\?\w{1,9}\})?(?:\s|\\[,;: ])*"
     r"(?:\\mathrm\s?\{d\}|\\dd|d)\s*\\?\w{1,9}\s*\$?\s*"
 )
 _OF_ANY = r"[-−+]?∂[HLFKSRVUW][_0-9]{0,3}/∂[^-−+=∂*/(){}\[\]]{1,20}|\{[^={}]{1,20},H\}"
@@ -293,15 +294,18 @@ def is_definition(said: str, key: str, scope: Scope) -> bool:
     return re.fullmatch(_DEFINITIONS.get(key, "(?!)"), said) is not None
 
 
-def is_action(text: str) -> bool:
-    r"""Tell whether a side is ``∫ p dq``, what Hamilton's characteristic function is.
+def is_action(text: str, key: str) -> bool:
+    r"""Tell whether a side is ``∫ p dq`` where W or S is asked, or ``(1/2π) ∮ p dq`` where an action is.
 
     Examples
     --------
-    >>> is_action(r"$\int p_x\,\mathrm{d}x$"), is_action("∫ p dq"), is_action("∫ x dx")
-    (True, True, False)
+    >>> is_action(r"$\int p_x\,\mathrm{d}x$", "W"), is_action("∫ x dx", "W"), is_action("(1/2π)∮ p dq", "J")
+    (True, False, True)
     """
-    return _ACTION.fullmatch(text) is not None
+    if key not in ("W", "S") and key.rstrip("0123456789_") not in ("J", "I"):
+        return False
+    found = _ACTION.fullmatch(text)
+    return found is not None and (found["share"] is None) == (key in ("W", "S"))
 
 
 def is_of_another(said: str) -> bool:
