@@ -528,3 +528,10 @@ def test_laws_of_any_top(inertia, weights, momentum, axis, step):
     assert abs(reversal_error(top, (0, 5 * step), start, method=method, step=step * (1 + 1e-12))).max() < (
         1e-11 * (1 + abs(there.y).max()) ** 4
     )
+
+
+@pytest.mark.parametrize("structure", [[[0, 1], [1, 0]], [[1, 0], [0, 0]], [[0, 1], [-2, 0]]])
+def test_a_bracket_is_antisymmetric(structure):
+    x, y = sp.symbols("x y", real=True)
+    assert PoissonSystem(x**2 + y**2, [x, y], [[0, x], [-x, 0]]).is_poisson()
+    assert PoissonSystem(x**2 + y**2, [x, y], structure).is_poisson().fails

@@ -29,6 +29,12 @@ TRUE = [
     (cos(x) ** 2000 * (1 + tan(x) ** 2) ** 1000, 1, Domain(), 2),
     ((x + 1) ** 3000 * (x - 1) ** 3000, (x**2 - 1) ** 3000, Domain(), (x**2 + 1) ** 3000),
     ((1 + x) ** Rational(501, 2), (1 + x) ** 250 * sqrt(1 + x), Domain(), (1 + x) ** 250),
+    (
+        (exp(x / 3) + 1) * (exp(x / 6) + 1),
+        exp(x / 2) + exp(x / 3) + exp(x / 6) + 1,
+        Domain(),
+        exp(x / 2) + 2 * exp(x / 3) + 1,
+    ),
     (exp(I * x) ** 300, cos(300 * x) + I * sin(300 * x), Domain(), cos(300 * x)),
     (cos(2 * x) ** 250, (cos(x) ** 2 - sin(x) ** 2) ** 250, Domain(), (cos(x) ** 2 + sin(x) ** 2) ** 250),
 ]
