@@ -56,6 +56,22 @@ def chain(sites: int) -> Callable[[], object]:
     return lambda: propagate(Hamiltonian(H, q, p), (0, 0.01), start, **how)
 
 
+def stiff(sites: int) -> Callable[[], object]:
+    """A thousand steps of a stiff chain by Newton's iteration, whose loop has been compiled."""
+    import numpy as np
+    import sympy as sp
+
+    from canon import Gauss, Hamiltonian, propagate
+
+    q, p = sp.symbols(f"q0:{sites}", real=True), sp.symbols(f"p0:{sites}", real=True)
+    stretches = [b - a for a, b in zip((sp.Integer(0), *q), (*q, sp.Integer(0)), strict=True)]
+    H = Hamiltonian(sp.Add(*(x**2 / 2 for x in p), *(5000 * (d**2 + d**4) for d in stretches)), q, p)
+    start = np.concatenate([np.sin(np.arange(sites)) / 100, np.zeros(sites)])
+    how = {"method": Gauss(3, iteration="newton"), "step": 0.05, "samples": 1}
+    propagate(H, (0, 0.05), start, **how)
+    return lambda: propagate(H, (0, 50), start, **how)
+
+
 def bodies(number: int) -> Callable[[], object]:
     """The same of bodies that attract each other, every pair a term."""
     import numpy as np
@@ -156,6 +172,7 @@ def _pendulum(go: Callable[..., object]) -> Callable[[], object]:
 
 ROWS = {
     "chain": Row("sites of a chain, H to first step", (100, 300, 1_000, 3_000, 10_000), chain),
+    "stiff": Row("sites of a stiff chain, 1,000 steps by Newton's stages", (8, 16, 32, 64, 128), stiff),
     "bodies": Row("bodies that attract, H to first step", (10, 20, 50, 100, 200), bodies),
     "links": Row("links of a pendulum, L to first accelerations", (5, 10, 20, 40, 80), links),
     "claims": Row("claims of a sheet", (10, 100, 1_000, 10_000), claims),
