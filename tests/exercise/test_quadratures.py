@@ -56,6 +56,18 @@ def judged(question, **answer):
             r"l\phi + \int\sqrt{2m(E + k/r) - l^2/r^2}\,dr",
             r"\phi + \int\sqrt{2m(E + k/r) - 1/r^2}\,dr",
         ),
+        (
+            OSCILLATOR,
+            "W",
+            r"\int_0^x \sqrt{2mE - m^2\omega^2s^2}\,ds",
+            r"\int_0^x \sqrt{2mE - m\omega^2s^2}\,ds",
+        ),
+        (
+            ANY_POTENTIAL,
+            "W",
+            "Integral(sqrt(2*(E - V(s))), (s, 1, x))",
+            "Integral(sqrt(2*(E + V(s))), (s, 1, x))",
+        ),
         (ANY_POTENTIAL, "W", r"\int\sqrt{2(E - V(x))}\,dx", r"\int\sqrt{2(E + V(x))}\,dx"),
         (
             PLANE,
@@ -76,6 +88,9 @@ def test_a_complete_integral_may_be_a_quadrature(question, key, right, wrong):
         (OSCILLATOR, rf"x \int {ROOT}\,dx", "has to be a constant"),
         (OSCILLATOR, rf"\left(\int {ROOT}\,dx\right)^2", "has to be a constant"),
         (OSCILLATOR, rf"\int {ROOT}\,dt", "over a coordinate"),
+        (OSCILLATOR, r"x \int_0^x \sqrt{E - s^2}\,ds", "has to be a constant"),
+        (OSCILLATOR, r"\int_0^x \sqrt{E - 1/s^2}\,ds", "may have no value"),
+        (OSCILLATOR, r"\int_0^E \sqrt{E - s^2}\,ds", "may have no value"),
         (OSCILLATOR, rf"\int {ROOT}", "a lower and an upper limit"),
         (PLANE, r"\int\sqrt{2(E - x^2 - y^2)}\,dx", "holds y too"),
         (OSCILLATOR, r"\int\int x\,dx\,dx", "holds an integral too"),

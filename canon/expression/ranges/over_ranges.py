@@ -26,7 +26,7 @@ from canon.expression.text.syntax import Call, Name, Product, Sum, Tuple, parts
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from sympy import Expr
+    from sympy import Basic, Expr
 
     from canon.expression.text.scope import Scope
     from canon.expression.text.syntax import Node
@@ -95,6 +95,8 @@ def _integrated(builder: _Builder, node: Call, operand: Node, found: Sequence[Ra
     inside = type(builder)(builder.text, scope)
     value = inside.expression(operand)
     if (part := part_without_value(builder, node, found)) is not None:
+        if (known := _up_to_a_coordinate(builder, inside, value, found)) is not None:
+            return known
         reason = "this integral is not read: here its integrand may have no value on the range"
         builder.refuse(part, reason, "write its value, as a function of its ends")
     for number, one in enumerate(found):
@@ -103,11 +105,36 @@ def _integrated(builder: _Builder, node: Call, operand: Node, found: Sequence[Ra
             builder.refuse(one.variable, "an integral is over a variable, no function or rate")
         outer = inside if number + 1 < len(found) else builder
         whole = definite_integral(value, x, outer.expression(one.lower), outer.expression(one.upper))
+        if whole is None and (known := _up_to_a_coordinate(builder, inside, value, found)) is not None:
+            return known
         if whole is None:
             reason = "this integral is not read: the integrand is no sum of powers, sines, cosines and exponentials"
             builder.refuse(node, reason, "write its value, as a function of its ends")
         value = whole
     return value
+
+
+def _up_to_a_coordinate(builder: _Builder, inside: _Builder, f: Expr, found: Sequence[Range]) -> Expr | None:
+    """Return an integral from a place where f has a value up to a coordinate, whose derivative is f there.
+
+    None where quadratures may not stand, and of any other integral.
+    """
+    if not builder.scope.quadratures or len(found) != 1:
+        return None
+    (one,) = found
+    x, lower, upper = (
+        inside.scope.symbol(one.variable.text),
+        *map(builder.expression, (one.lower, one.upper)),
+    )
+    moving = [s for s in (f.free_symbols | lower.free_symbols) - {x} if _moves(s, builder.scope)]
+    if x is None or moving or f.has(sp.Integral) or not isinstance(upper, Coordinate):
+        return None
+    has_value = not f.subs(x, lower).has(sp.zoo, sp.oo, sp.nan)
+    return sp.Integral(f, (x, lower, upper)) if has_value else None
+
+
+def _moves(symbol: Basic, scope: Scope) -> bool:
+    return isinstance(symbol, Coordinate | Momentum | Rate) or symbol == scope.time
 
 
 def _quadrature(builder: _Builder, variable: Name, operand: Node) -> Expr:
@@ -118,10 +145,8 @@ def _quadrature(builder: _Builder, variable: Name, operand: Node) -> Expr:
     x, f = builder.scope.symbol(variable.text), builder.expression(operand)
     if variable.primes or not isinstance(x, Coordinate):
         builder.refuse(variable, "an integral without limits is over a coordinate", "write its limits")
-    others = {
-        s for s in f.free_symbols if isinstance(s, Coordinate | Momentum | Rate) or s == builder.scope.time
-    }
-    if (moving := sorted(map(str, others - {x}))) or f.has(sp.Integral):
+    moving = sorted(str(s) for s in f.free_symbols - {x} if _moves(s, builder.scope))
+    if moving or f.has(sp.Integral):
         held = moving[0] if moving else "an integral"
         reason = f"an integral over {x} without limits holds {held} too, by which its derivative is not known"
         builder.refuse(operand, reason, "write its value")
