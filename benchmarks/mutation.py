@@ -3,6 +3,7 @@
 pip install cosmic-ray pytest-cov
 python benchmarks/mutation.py --count 500 --seed 1           # what is not done yet, then the table
 python benchmarks/mutation.py --count 500 --seed 1 --again   # survivors once more, by the tests that are there now
+python benchmarks/mutation.py --count 500 --seed 1 --again --part 2/3   # a third of them, beside two other processes
 
 The changes are those of cosmic-ray's operators, and of a few that it lacks (`mutants/operators.py`), at places drawn
 by the seed. First the quick tests run under coverage.py, so that each line is known with the tests that execute it.
@@ -20,6 +21,7 @@ import tomllib
 from collections import Counter
 from dataclasses import asdict, replace
 from pathlib import Path
+from typing import NamedTuple
 
 sys.path.insert(0, str(Path(__file__).parent))
 
@@ -30,7 +32,7 @@ from mutants.trial import ONCE_MORE, Trial, copy_of_checkout, failing, trial, wa
 
 HOME = Path(__file__).parents[1]
 KEPT = HOME / "out" / "mutation"
-COPY, RECORD, CACHES, LOG = (KEPT / name for name in ("checkout", "record", "caches", "log"))
+RECORD, CACHES = (KEPT / name for name in ("record", "caches"))
 SURVIVORS = Path(__file__).parent / "mutants" / "survivors.toml"
 
 
@@ -41,11 +43,16 @@ def main(arguments: list[str]) -> None:
     parser.add_argument("--count", type=int, default=500, help="mutants, or a few more")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--again", action="store_true", help="try the survivors once more")
+    parser.add_argument("--part", type=_part, default=(1, 1), help="which of how many processes this is, 2/3")
     said = parser.parse_args(arguments)
+    place = Place(KEPT / f"checkout-{said.part[0]}", KEPT / f"log-{said.part[0]}")
+    explained = {key for key, each in explanations().items() if "test" not in each}
     results = KEPT / f"results-{said.count}-{said.seed}.jsonl"
     mutants = kept_or_drawn(said.count, said.seed)
     found = read_results(results)
-    left = [m for m in mutants if m.key not in found or (said.again and found[m.key].outcome == "survived")]
+    alive = {key for key, each in found.items() if each.outcome == "survived" and key not in explained}
+    left = [m for m in mutants if m.key not in found or (said.again and m.key in alive)]
+    left = left[said.part[0] - 1 :: said.part[1]]
     gone = [mutant for mutant in left if not is_there(HOME, mutant)]
     if gone:
         print(
@@ -53,12 +60,24 @@ def main(arguments: list[str]) -> None:
         )
         left = [mutant for mutant in left if mutant not in gone]
     if left:
-        copy_of_checkout(HOME, COPY)
-        for place, tests in places_of_tests(COPY).items():
-            record_place(COPY, place, tests, RECORD)
-        try_all(mutants, left, read_record(RECORD), results, again=said.again)
+        copy_of_checkout(HOME, place.copy)
+        for name, tests in places_of_tests(place.copy).items():
+            record_place(place.copy, name, tests, RECORD)
+        try_all(mutants, left, read_record(RECORD), results, place, again=said.again)
         found = read_results(results)
     tell([mutant for mutant in mutants if mutant.key in found], found, explanations())
+
+
+class Place(NamedTuple):
+    """Where a process writes mutants, and what pytest says there."""
+
+    copy: Path
+    log: Path
+
+
+def _part(text: str) -> tuple[int, int]:
+    part, _, parts = text.partition("/")
+    return int(part), int(parts)
 
 
 def kept_or_drawn(count: int, seed: int) -> list[Mutant]:
@@ -82,39 +101,43 @@ def explanations() -> dict[str, dict[str, str]]:
     return {each["mutant"]: each for each in tomllib.loads(SURVIVORS.read_text("utf-8"))["survivor"]}
 
 
-def try_all(mutants: list[Mutant], left: list[Mutant], record: Record, results: Path, *, again: bool) -> None:
+def try_all(
+    mutants: list[Mutant], left: list[Mutant], record: Record, results: Path, place: Place, *, again: bool
+) -> None:
     """Try what is left of the mutants and write what came of each; then those anew whose killers always fail."""
     warm_up()
     CACHES.mkdir(exist_ok=True)
     while left:
         for k, mutant in enumerate(left):
-            found = try_once_more(mutant, record) if again else try_one(mutant, record)
+            found = (try_once_more if again else try_one)(mutant, record, place)
             with results.open("a", encoding="utf-8") as out:
                 out.write(json.dumps([mutant.key, asdict(found)], ensure_ascii=False) + "\n")
             told = f"{k + 1}/{len(left)} {found.outcome:9}{found.seconds:6.1f} s  {mutant.key}"
             print(told, file=sys.stderr, flush=True)
         known = read_results(results)
         killers = {mutant.key: known[mutant.key].by for mutant in mutants if mutant.key in known}
-        always = failing({test: 30.0 for test in killers.values() if ".py" in test}, COPY, CACHES, LOG)
+        always = failing(
+            {test: 30.0 for test in killers.values() if ".py" in test}, place.copy, CACHES, place.log
+        )
         record.unfit |= always
         left = [mutant for mutant in mutants if killers.get(mutant.key) in always]
 
 
-def try_one(mutant: Mutant, record: Record) -> Trial:
+def try_one(mutant: Mutant, record: Record, place: Place) -> Trial:
     """Try a mutant: by a few tests, whose modules are soon imported, then by the others."""
-    tests = tests_for(mutant, record, COPY, written_for(mutant))
+    tests = tests_for(mutant, record, place.copy, written_for(mutant))
     found = Trial("survived", "", "no test", 0, 0.0)
     for part in (first := quickest(tests)), {t: s for t, s in tests.items() if t not in first}:
         if part and found.outcome == "survived":
-            after = trial(mutant, part, COPY, CACHES, LOG)
+            after = trial(mutant, part, place.copy, CACHES, place.log)
             found = replace(after, tests=found.tests + after.tests, seconds=found.seconds + after.seconds)
     return found
 
 
-def try_once_more(mutant: Mutant, record: Record) -> Trial:
+def try_once_more(mutant: Mutant, record: Record, place: Place) -> Trial:
     """Try a survivor by the test that was written for it, or by many more tests."""
-    tests = dict.fromkeys(written_for(mutant), 5.0) or tests_once_more(mutant, record, COPY)
-    return trial(mutant, tests, COPY, CACHES, LOG, ONCE_MORE)
+    tests = dict.fromkeys(written_for(mutant), 5.0) or tests_once_more(mutant, record, place.copy)
+    return trial(mutant, tests, place.copy, CACHES, place.log, ONCE_MORE)
 
 
 def written_for(mutant: Mutant) -> list[str]:
