@@ -136,3 +136,12 @@ def test_hostile_answers_are_refused_at_once(answer):
     start = time.process_time()
     assert judged(value="2", unit="m", claim=answer, tolerance="1 %").status != "holds"
     assert time.process_time() - start < 4
+
+
+@pytest.mark.parametrize(
+    ("claim", "told"), [("1.41421", True), ("1.4", False), ("1.42", False), ("-1.41421", False)]
+)
+def test_a_rounded_value_is_told_where_the_exact_one_is_asked_for(claim, told):
+    found = judged(value="sqrt(2)", claim=claim)
+    assert found.status == "fails"
+    assert ("is the right value rounded" in found.reasons[0]) == told

@@ -208,6 +208,7 @@ def test_the_document_tells_every_path_and_its_errors(client):
     assert {part.split('"')[0] for part in used} <= set(schemas)
     page = client.get("/api").text
     assert all(path in page for path in paths)
+    assert all(f"<h3>{name}</h3>" in page for name in schemas)
     example = document["paths"]["/check"]["post"]["requestBody"]["content"]["application/json"]["example"]
     assert client.post("/check", json=example).json()["status"] == "holds"
     text = document["paths"]["/read"]["post"]["requestBody"]["content"]["application/json"]["example"]
