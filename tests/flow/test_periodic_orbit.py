@@ -178,6 +178,45 @@ def test_halo_orbits_of_howell(x0: float, z0: float, rate: float, half: float) -
     assert "hyperbolic" in orbit.multipliers.kinds
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("x0", "z0", "rate", "period"),
+    [
+        (0.82339081983651485, 9.8941366235910004e-4, 0.12634272983881797, 2.7430007981241529),
+        (0.87592140310093525, 0.19175810982939320, 0.23080031482213192, 2.1783120807931518),
+        (1.1427323976670050, 0.15915200933380999, -0.22233902828510901, 3.1327035113287223),
+        (1.0831337559276397, 0.20231055618100155, -0.20121168055184560, 2.3861839336103214),
+    ],
+)
+def test_halo_orbits_between_earth_and_moon(x0: float, z0: float, rate: float, period: float) -> None:
+    """JPL's catalogue of periodic orbits, ssd.jpl.nasa.gov/tools/periodic_orbits.html: two about L₁, two about L₂."""
+    H = restricted(sp.Float("0.01215058560962404", 17))
+    guess = [x0 + 1e-6, 0, z0, 0, rate + x0 + 1e-6, 0]
+    found = periodic_orbit(
+        H, guess, period + 1e-4, reversal=("y", "p_x", "p_z"), energy=_energy(H, x0, z0, rate)
+    )
+    assert found.y[[0, 2, 4]] == pytest.approx([x0, z0, rate + x0], abs=1e-9)
+    assert found.period == pytest.approx(period, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("x0", "z0", "rate", "period", "index"),
+    [
+        (0.82339081983651485, 9.8941366235910004e-4, 0.12634272983881797, 2.743, 1180.4065333857600),
+        (0.87592140310093525, 0.19175810982939320, 0.23080031482213192, 2.1783, 1.0000000000218601),
+    ],
+)
+def test_halo_orbits_have_the_stability_of_the_catalogue(
+    x0: float, z0: float, rate: float, period: float, index: float
+) -> None:
+    """The catalogue's index is the largest |½(λ + 1/λ)| of the multipliers."""
+    H = restricted(sp.Float("0.01215058560962404", 17))
+    guess, energy = [x0, 0, z0, 0, rate + x0, 0], _energy(H, x0, z0, rate)
+    found = periodic_orbit(H, guess, period, reversal=("y", "p_x", "p_z"), energy=energy)
+    largest = abs(found.multipliers.values).max()
+    assert (largest + 1 / largest) / 2 == pytest.approx(index, rel=1e-8)
+
+
 def _energy(H: Hamiltonian, x0: float, z0: float, rate: float) -> float:
     start = dict(zip((*H.q, *H.p), (x0, 0, z0, 0, rate + x0, 0), strict=True))
     return float(H.H.subs(start))
