@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from xml.etree.ElementTree import Element, SubElement
 
 from canon.expression.parse import syntax_of
+from canon.expression.ranges.range_of_call import ranges, without_bounds
 from canon.expression.text.syntax import (
     Call,
     Comparison,
@@ -65,6 +66,8 @@ def formula(text: str, scope: Scope) -> Element | None:
     >>> from canon.expression.text.scope import Scope
     >>> tostring(formula("theta_dot/2", Scope()), encoding="unicode")
     '<math><mfrac><mover accent="true"><mi>θ</mi><mo>˙</mo></mover><mn>2</mn></mfrac></math>'
+    >>> "".join(formula("Integral(s**2, (s, 0, x))", Scope()).itertext())
+    '∫0xs2ds'
     """
     if len(text) > MAX_CHARACTERS:
         return None
@@ -237,6 +240,20 @@ def _power(node: Power) -> Element:
     return _over("msup", mathml(base) if plain else _bracketed((base,)), mathml(exponent))
 
 
+def _integral(integrand: Node, over: Sequence[Node]) -> Element:
+    """Return an integral over one range after the other, the last the outermost, or over a variable without limits."""
+    found, alone = ranges(over), without_bounds(over)
+    row = _row()
+    for one in reversed(found):
+        row.append(_over("msubsup", _leaf("mo", "∫"), mathml(one.lower), mathml(one.upper)))
+    if alone is not None:
+        row.append(_leaf("mo", "∫"))
+    row.append(_in_brackets(integrand, Sum, Comparison))
+    for variable in (alone,) if alone is not None else (one.variable for one in found):
+        row.append(_row(_leaf("mo", "d"), mathml(variable)))
+    return row
+
+
 def _call(node: Call) -> Element:
     match node.function, node.arguments:
         case "sqrt", (argument,):
@@ -249,6 +266,8 @@ def _call(node: Call) -> Element:
             return mathml(Comparison((left, right), ("!=",), node.column))
         case "Derivative", (function, *variables) if variables:
             return _derivative(function, variables)
+        case ("Integral", (integrand, *over)) if ranges(over) or without_bounds(over):
+            return _integral(integrand, over)
         case "Piecewise", pieces if pieces and all(
             isinstance(p, Tuple) and len(p.items) == 2 for p in pieces
         ):

@@ -120,8 +120,9 @@ def _texts(place: str, value: Any) -> Iterator[tuple[str, str]]:
 
 def _statements(place: str, text: str, reading: Reading) -> Iterator[dict[str, str]]:
     try:
-        for statement in statements_of(text, reading.scope):
-            yield {"place": place, **_set(statement, reading.scope)}
+        scope = reading.scope_of(place)
+        for statement in statements_of(text, scope):
+            yield {"place": place, **_set(statement, scope)}
     except LanguageError as error:
         raise reading.error(place, error.at_home_in(text)) from None
 

@@ -86,6 +86,16 @@ def test_a_text_is_shown_as_it_was_read(client):
     assert twin["statements"][0]["plain"] != found["plain"]
 
 
+def test_a_quadrature_is_shown_as_it_was_read(client):
+    asked = {"kind": "hamilton-jacobi", "key": "W", "q": ["x"], "p": ["p"], "constants": ["E"]}
+    found = client.post("/read", json={**asked, "text": r"\int\sqrt{2E - x^2}\,dx"}).json()
+    (statement,) = found["statements"]
+    assert statement["plain"] == "Integral(sqrt(2*E - x**2), x)"
+    assert "".join(fromstring(statement["mathml"]).itertext()).startswith("∫")
+    other = client.post("/read", json={**asked, "key": "H", "text": r"\int x\,dx"}).json()
+    assert other["error"]["column"] == 1
+
+
 def test_a_text_that_is_not_read_says_where(client):
     answer = client.post("/read", json={"text": "2*z + 1", "q": ["x"]})
     assert answer.status_code == 200

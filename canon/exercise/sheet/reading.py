@@ -342,14 +342,14 @@ class Reading:
         if key in self.instead:
             return self.instead[key]
         try:
-            said = parsed(parse, str(text), self._scope_of(key))
+            said = parsed(parse, str(text), self.scope_of(key))
         except LanguageError as error:
             raise self.error(key, error) from error
         if self._is_of_phase_space and re.split(r"[\[.]", key)[0] not in _RATES_TOO:
             self._refuse_rates(said, key)
         return substitute(said, self.at) if self.at else said
 
-    def _scope_of(self, key: str) -> Scope:
+    def scope_of(self, key: str) -> Scope:
         """Return the declared names, and whether quadratures may stand under a key."""
         return replace(self.scope, quadratures=True) if key in self.kind.quadratures else self.scope
 
