@@ -27,7 +27,7 @@ from canon.exercise.question.question import (
 )
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.possible_motion import motion_is_real, where_real
-from canon.mechanics.algebra.substitution import substitute
+from canon.mechanics.algebra.substitution import exchanged, substitute
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.integrable.separability import is_separable
 
@@ -102,7 +102,7 @@ def _without_quadratures(reading: Reading, whole: Expr, name: str, slopes: Seque
         reading.fault(
             name, "what stands beside an integral without limits, as its factor, has to be a constant"
         )
-    return whole.xreplace(dict.fromkeys(whole.atoms(sp.Integral), sp.S.Zero))
+    return exchanged(whole, dict.fromkeys(whole.atoms(sp.Integral), sp.S.Zero))
 
 
 def _check_constants(reading: Reading, H: Expr, constants: Sequence[Symbol]) -> None:
