@@ -12,10 +12,18 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from canon import RK4, Splitting, Taylor, propagate
-from canon.plot import COLOURS, PlotError, plot_block_means, plot_energy_error, plot_phase_portrait
+from canon.plot import (
+    COLOURS,
+    PlotError,
+    plot_block_means,
+    plot_energy_error,
+    plot_integral_drift,
+    plot_phase_portrait,
+)
 from canon.scene import find
 from canon.study.energy_drift.drift import drift
 from canon.study.energy_drift.drift_study import drift_study
+from canon.study.energy_drift.integral_drift import IntegralDrift
 
 
 @pytest.fixture(scope="module")
@@ -119,3 +127,18 @@ def test_a_missing_matplotlib_says_what_to_install(monkeypatch):
 def test_matplotlib_is_not_loaded_before_a_picture_is_asked_for():
     code = "import sys, canon.plot; assert not any(name.startswith('matplotlib') for name in sys.modules)"
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_integral_drifts_have_a_line_of_their_power():
+    radii, order = (0.02, 0.04, 0.08), 4
+    seen = IntegralDrift(radii, tuple(r**order for r in radii), order, 4.0, (True, True, True))
+    lost = IntegralDrift(radii, (1e-17, 1e-16, 2e-16), 5, None, (False, False, True))
+    axes = plot_integral_drift(seen, lost)
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == [
+        "order 3: slope 4.00",
+        "order 4: drift below rounding",
+    ]
+    points, line, _, beside = axes.lines
+    assert points.get_color() == line.get_color() != beside.get_color()
+    np.testing.assert_allclose(line.get_ydata(), points.get_ydata(), rtol=1e-12)
+    assert beside.get_ydata()[0] == pytest.approx(2e-16 * (0.02 / 0.08) ** 5)

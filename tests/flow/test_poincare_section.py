@@ -8,7 +8,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from canon import Event, Hamiltonian, Splitting, coordinates, parameters, propagate
+from canon import Event, Hamiltonian, Splitting, Taylor, coordinates, parameters, propagate
 from canon.flow import NonFiniteStateError, SectionNotMetError, poincare_section, starts_of_energy
 
 KAHAN_LI = {"method": Splitting("kahan-li-8"), "step": 0.2}
@@ -85,6 +85,15 @@ def test_an_ensemble_has_the_bits_of_its_orbits(orbits: int, seed: int, points: 
     assert many.counts.tolist() == [points] * orbits
     assert (many.of_orbit(k) == one.y).all()
     assert (many.t[many.orbit == k] == one.t).all()
+
+
+def test_so_many_points_by_events_too() -> None:
+    """Taylor's method locates them as events, and goes on to the end of the span."""
+    start = starts_of_energy("henon-heiles", 0.1, [0.0, 0.2, 0.0, 0.0], "p_x")
+    all_ = poincare_section("henon-heiles", (0, 60), start, "x", method=Taylor())
+    two = poincare_section("henon-heiles", (0, 60), start, "x", points=2, method=Taylor())
+    assert all_.counts.tolist() > two.counts.tolist() == [2]
+    assert (two.y == all_.y[:, :2]).all()
 
 
 def test_more_places_than_there_is_memory_to_note_at_once(monkeypatch: pytest.MonkeyPatch) -> None:

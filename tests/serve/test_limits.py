@@ -418,3 +418,12 @@ def test_the_clients_that_are_remembered_are_bounded():
     for number in range(MOST_CLIENTS + 500):
         buckets.take(str(number), 1.0)
     assert len(buckets._levels) == MOST_CLIENTS
+
+
+def test_who_has_not_asked_for_longest_is_forgotten_first():
+    buckets = Buckets(1.0, 1.0, lambda: 0.0)
+    for number in range(MOST_CLIENTS + 1):
+        buckets.take(str(number), 1.0)
+    assert buckets.take(str(MOST_CLIENTS), 1.0) > 0.0
+    assert buckets.take("1", 1.0) > 0.0
+    assert buckets.take("0", 1.0) == 0.0

@@ -126,6 +126,7 @@ def test_no_error_at_all_is_below_the_resolution():
     assert found.bound == 0.0
     assert found.detection_limit == pytest.approx(2.0**-53 / series.SPAN)
     assert found.exponent_interval == (0.0, 1.0)
+    assert (found.slope, found.amplitude_slope, found.exponent, found.walk) == (0.0, 0.0, 0.0, 0.0)
 
 
 def test_errors_of_a_few_units_in_the_last_place_are_bounded():
