@@ -44,6 +44,7 @@ RESULTS = {
     "explore/a_cloud_of_starts": r"order 5: symplectic to \de-1[3-6], right to 1e-3 within 3e-03",
     "explore/a_ready_scene": r"energy off by at most \de-1[3-6]",
     "explore/a_study_of_steps": r"27 cases: 27 finished, 0 failed, 0 pending$",
+    "explore/halo_orbits": r"period 3.4155308066, in the catalogue 3.4155308066\n26 orbits: all",
     "explore/two_neighbours_part": r"exponent 0.\d\d/s: an error grows tenfold",
     "explore/where_do_orbits_go": r"turned over with the momenta 2.01 2.1 2.5",
     "bring_your_own/a_measured_potential": r"stretched to 1.1: period 2.38\d\d",

@@ -9,7 +9,9 @@ from canon import Hamiltonian, Lagrangian, coordinates
 from canon.flow.geometry.flow_jacobian import flow_jacobian, reversal_error, symplecticity_defect
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor
 from canon.flow.propagation import propagate
+from canon.flow.request import Request
 from canon.flow.run.non_finite_state import NonFiniteStateError
+from canon.flow.system_request import any_task
 from canon.kernel.schemes.splitting_schemes import SCHEMES
 from tests.flow.systems import (
     DOUBLE_PENDULUM,
@@ -230,3 +232,17 @@ def test_the_derivative_of_a_motion_that_sticks_is_not_given():
     step = Hamiltonian(x.momentum**2 / 2 + x**2 / 2 + sp.Heaviside(x) / 10, [x], [x.momentum])
     with pytest.raises(ValueError, match="refracted or reflected"):
         flow_jacobian(step, (0, 5), [1.0, 0.3])
+
+
+def test_variational_equations_are_made_once():
+    """Newton's method asks for Jacobians of one system again and again: the graph is then as large as before."""
+    x = coordinates("x")
+    H = Hamiltonian(x.momentum**2 / 2 - sp.cos(x), [x], [x.momentum])
+    found = [flow_jacobian(H, (0, 3), [1.0, speed]).final for speed in (0.1, 0.2, 0.1)]
+    task, _ = any_task(Request(H, (0, 3), [1.0, 0.1]))
+    nodes = len(task.system.graph.nodes)
+    again = [flow_jacobian(H, (0, 3), [1.0, speed]).final for speed in (0.1, 0.2, 0.1)]
+    assert len(task.system.graph.nodes) == nodes
+    assert np.array_equal(found, again)
+    assert np.array_equal(found[0], found[2])
+    assert not np.array_equal(found[0], found[1])

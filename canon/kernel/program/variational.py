@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,11 @@ if TYPE_CHECKING:
 __all__ = ["variational"]
 
 
+_SYSTEMS = 16
+"""Systems whose variational equations are kept: Newton's method asks for those of one system again and again."""
+
+
+@functools.lru_cache(maxsize=_SYSTEMS)
 def variational(system: HamiltonEquations, variations: int) -> HamiltonEquations:
     """Return the equations of (q, δq; p, δp) with so many variations δ: δẋ_i = Σ_j ∂ẋ_i/∂x_j δx_j.
 
