@@ -302,7 +302,7 @@ def is_action(text: str, key: str) -> bool:
     >>> is_action(r"$\int p_x\,\mathrm{d}x$", "W"), is_action("∫ x dx", "W"), is_action("(1/2π)∮ p dq", "J")
     (True, False, True)
     """
-    if key not in ("W", "S") and key.rstrip("0123456789_") not in ("J", "I"):
+    if key not in ("W", "S") and key.rstrip("0123456789_") != "J":
         return False
     found = _ACTION.fullmatch(text)
     return found is not None and (found["share"] is None) == (key in ("W", "S"))

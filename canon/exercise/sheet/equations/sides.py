@@ -68,7 +68,7 @@ class Sides:
 
     def is_origin(self, place: str, side: Side, asked: str) -> bool:
         """Tell whether a side says where a formula comes from: of functions, given or not."""
-        if is_action(side.text, asked):
+        if is_action(side.text, asked) and (asked != "S" or "constants" in self.keys):  # Gibbs's S is another
             return True
         return (
             is_definition(side.said, asked, self.scope) or self.given(place).worked_out(side.said) is not None
