@@ -6,7 +6,7 @@ python benchmarks/tested_lines.py --report           # nothing is run: the table
 python benchmarks/tested_lines.py --report study     # and the lines of a folder that are not run
 
 Other arguments go to pytest. It takes ``pip install coverage pytest-random-order``. Processes that are killed tell
-nothing of what they ran.
+nothing of what they ran. Tests with a bound of processor time may fail where each line takes longer than it does alone.
 """
 
 from __future__ import annotations
@@ -37,6 +37,7 @@ def run(arguments: list[str]) -> int:
         cwd=HERE, env={**os.environ, "COVERAGE_FILE": str(DATA)}, stdout=sys.stderr, check=False,
     )  # fmt: skip
     known = Coverage(data_file=str(DATA), config_file=str(RULES))
+    known.load()  # or what earlier runs have found would be lost
     known.combine([str(DATA.parent)], keep=False)
     known.save()
     return done.returncode
