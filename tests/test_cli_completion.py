@@ -7,6 +7,8 @@ import subprocess
 import pytest
 
 from canon.cli import COMMANDS, main
+from canon.command import completion
+from canon.flow.method.method_text import method_named
 from canon.kernel.schemes.splitting_schemes import SCHEMES
 from canon.scene import names
 
@@ -124,3 +126,9 @@ def test_another_shell_is_refused(capsys):
     told = capsys.readouterr().err
     assert "'nushell'" in told
     assert all(shell in told for shell in SHELLS)
+
+
+@pytest.mark.parametrize("name", completion._methods())
+def test_every_method_that_is_offered_is_one(name):
+    said, offered_as = (re.sub(r"\W", "", text.lower()) for text in (str(method_named(name)), name))
+    assert said.startswith(offered_as)

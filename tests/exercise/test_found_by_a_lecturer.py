@@ -235,3 +235,34 @@ def test_what_two_numbers_may_be_meant_by_is_asked(claim: str, told: str) -> Non
     found = judged({"kind": "number", "claim": claim, "value": "300.15", "unit": "K"})
     assert found.status == "invalid"
     assert told in found.reasons[0]
+
+
+SPRING = {"parameters": M, "q": ["x"], "p": ["p"], "L": "m*x_dot**2/2 - k*x**2/2"}
+
+
+@pytest.mark.parametrize("chain", ["{} = H", "{} = T + V = H", "H = T + V = {}", "H = {}"])
+def test_a_chain_may_end_with_what_is_asked(chain: str) -> None:
+    question = {"kind": "legendre-hamiltonian", **SPRING}
+    assert judged({**question, "H": chain.format("p^2/(2m) + k x^2/2")}).status == "holds"
+    assert judged({**question, "H": chain.format("p^2/(2m) - k x^2/2")}).status == "fails"
+
+
+def test_both_sides_are_told_whatever_the_right_one_is() -> None:
+    bracket = {"kind": "poisson-bracket", **PHASE, "pairs": [{"f": "p", "g": "q", "value": "1"}]}
+    assert "1.00000000000000 against -1.00000000000000" in " ".join(judged(bracket).reasons)
+
+
+def test_a_lost_time_and_a_slip_in_a_motion_are_told() -> None:
+    falling = {"kind": "constant-of-motion", **PHASE, "H": "p**2/2 + q"}
+    assert judged({**falling, "I": "p + t"}).status == "holds"
+    assert "the term 1 lacks the factor t" in judged({**falling, "I": "p + 1"}).reasons[0]
+    moving = {"kind": "solution", "q": ["x"], "L": SPRING["L"], "parameters": {**M, "A": "real"}}
+    assert judged({**moving, "solution": {"x": "A*cos(sqrt(k/m)*t)"}}).status == "holds"
+    assert (
+        "should be cos(sqrt(k)*t/sqrt(m))"
+        in judged({**moving, "solution": {"x": "A*cos(2*sqrt(k/m)*t)"}}).reasons[0]
+    )
+    begun = {**moving, "initial": {"x": "1"}}
+    assert (
+        "should be half what it is" in judged({**begun, "solution": {"x": "2*cos(sqrt(k/m)*t)"}}).reasons[0]
+    )

@@ -226,6 +226,8 @@ def test_numbers_are_no_constraints() -> None:
     free = Lagrangian((x.dot**2 + y.dot**2) / 2, [x, y])
     with pytest.raises(ValueError, match="the constraint 0 = 0 is true anyway"):
         ConstrainedLagrangian(free, [x - x])
+    with pytest.raises(ValueError, match="the constraint -2 = 0 is never true"):
+        ConstrainedLagrangian(free, [sp.Integer(-2)])
     with pytest.raises(ValueError, match="the constraint 2 = 0 is never true"):
         ConstrainedLagrangian(free, [], [sp.Integer(2)])
     assert ConstrainedLagrangian(free, [x - y], [x.dot]).nonholonomic == (x.dot,)

@@ -11,7 +11,7 @@ from sympy.parsing.sympy_parser import parse_expr
 
 from canon import coordinates, parameters
 from canon.expression.parse import LanguageError, Scope, parse_equation, parse_expression, statements_of
-from canon.expression.symbols.symbol import Coordinate, Momentum, time
+from canon.expression.symbols.symbol import Coordinate, Momentum, acceleration, time
 
 FOLDER = Path(__file__).parents[1] / "data" / "typed"
 LABEL = re.compile(
@@ -298,3 +298,11 @@ def test_what_is_open_is_refused():
     for entry in corpus("outside.json")["open"]:
         with pytest.raises(LanguageError):
             read(entry["form"], entry["scope"])
+
+
+@pytest.mark.parametrize("mark", "'′’ʹ´")
+def test_one_prime_of_any_keyboard_is_a_velocity(mark):
+    x = coordinates("x")
+    scope = Scope({"x": x})
+    assert parse_expression(f"x{mark}", scope) == x.dot
+    assert parse_expression(f"x{mark}{mark}", scope) == acceleration(x)

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from canon.expression.symbols.symbol import acceleration, coordinates, parameters, time, velocity
+from canon.mechanics.algebra.all_vanish import differ
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 from canon.mechanics.lagrange.dependence import DependentConstraintsError
 from canon.mechanics.lagrange.lagrangian import Lagrangian
@@ -313,3 +314,9 @@ def test_gravity_on_a_driven_support_with_equivalent_forms():
     equation = (1 + 4 * s**2) * s.ddot + 4 * s * s.dot**2 + (2 * g - w**2) * s
     assert equivalent_equations(bead.equations, [equation], [s.ddot]).holds
     assert equivalent_equations(bead.equations, [equation + 2 * w**2 * s], [s.ddot]).fails
+
+
+def test_numbers_differ_from_zero_on_either_side():
+    assert differ(sp.Integer(-2))
+    assert differ(sp.Rational(1, 3))
+    assert not differ(sp.Integer(0))

@@ -204,7 +204,7 @@ class _Plain:
             return first.text
         self.refuse_lagrangian(place, text, sides[0])
         if not self.is_asked(sides[0], asked) and self.is_asked(sides[-1], asked):
-            sides = [sides[-1], *sides[:-1]]  # p²/2m = H
+            sides = sides[::-1]  # p²/2m = T = H
         if self.is_asked(sides[0], asked):
             if place == "H" and sides[0].said.startswith("E"):
                 self.found.passed.append("E in H is read as H, which is asked for")
