@@ -266,3 +266,22 @@ def test_a_lost_time_and_a_slip_in_a_motion_are_told() -> None:
     assert (
         "should be half what it is" in judged({**begun, "solution": {"x": "2*cos(sqrt(k/m)*t)"}}).reasons[0]
     )
+
+
+@pytest.mark.parametrize(
+    ("given", "open_"),
+    [
+        ({}, ("this is one motion of many: 2 constants of integration stay open",)),
+        ({"initial": {"x": "A"}}, ("the initial value of x_dot stays open",)),
+        ({"initial": {"x": "A", "x_dot": "0"}}, ()),
+    ],
+)
+def test_what_a_motion_leaves_open_is_told(given: dict, open_: tuple[str, ...]) -> None:
+    moving = {"kind": "solution", "q": ["x"], "L": SPRING["L"], "parameters": {**M, "A": "real"}}
+    assert judged({**moving, **given, "solution": {"x": "A*cos(sqrt(k/m)*t)"}}).warnings == open_
+
+
+@pytest.mark.parametrize(("value", "other"), [("-1", True), ("-2", False), ("2", False)])
+def test_another_convention_is_told_where_it_is_one(value: str, other: bool) -> None:
+    found = judged({"kind": "poisson-bracket", **PHASE, "pairs": [{"f": "q", "g": "p", "value": value}]})
+    assert ("opposite sign convention" in found.reasons[0]) == other

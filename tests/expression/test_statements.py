@@ -70,3 +70,7 @@ def test_what_nobody_writes_costs_no_time(text):
         found = 0
     assert found <= 100
     assert time.process_time() - start < 2.0
+
+
+def test_no_blank_is_needed_behind_a_comma():
+    assert said("x' = p,p' = -x") == said("x' = p, p' = -x") == [["x'", "p"], ["p'", "-x"]]

@@ -144,3 +144,9 @@ def test_table_integrals(term):
 def test_nested_functions_are_left_alone():
     """SymPy's rules would search for minutes here."""
     assert table_integral(sp.exp(-x) * sp.sin(y * sp.exp(-x) + sp.exp(2 * x)) * sp.exp(2 * x), x) is None
+
+
+def test_the_potential_of_nothing_and_of_ones():
+    x, y = sp.symbols("x y", real=True)
+    assert potential([sp.S.Zero, sp.S.Zero], [x, y], Domain()) == 0
+    assert potential([sp.S.One, sp.S.One], [x, y], Domain()) == x + y
