@@ -12,7 +12,7 @@ import sympy as sp
 
 from canon.expression.symbols.symbol import coordinates
 from canon.expression.symbols.symbol import time as t
-from canon.flow.fixed_step.compiled_loop import compiled_loop
+from canon.flow.fixed_step.compiled_loop import _kept_splitting, compiled_loop
 from canon.flow.method.method import Splitting
 from canon.flow.method.number_formats import FIXED
 from canon.flow.propagation import propagate
@@ -107,11 +107,35 @@ def test_loops_give_the_written_out_motion(
         return motion.y[:, -1]
 
     rolled = end()
-    monkeypatch.setattr(splitting, "pair_forces", lambda system: None)
+    asked: list[HamiltonEquations] = []
+    monkeypatch.setattr(splitting, "pair_forces", asked.append)  # which finds none
+    _kept_splitting.cache_clear()  # or the loop of before would be taken again
     written_out = end()
+    assert asked
     bound = {"single": 2e-5, "double": 1e-13, "compensated": 1e-13}.get(precision, 2e-15)
     assert not np.array_equal(rolled, start(len(q))[:, 0])
     assert abs(rolled - written_out).max() < bound
+
+
+@pytest.mark.parametrize("heavy", [1, 3])
+def test_all_alike_and_one_heavy_body(heavy: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One strength is a number, and two are a table."""
+    bodies = plane()
+    q = flat(bodies)
+    pairs = itertools.combinations(enumerate(bodies), 2)
+    V = -sum(
+        (1 if i else heavy) / sp.sqrt((a[0] - b[0]) ** 2 + (b[1] - a[1]) ** 2 + SOFTENING)
+        for (i, a), (_, b) in pairs
+    )
+    H = Hamiltonian(sp.Add(*(s.momentum**2 / 2 for s in q)) + V, q, [s.momentum for s in q])
+    by = {"method": Splitting("verlet"), "step": 0.01, "samples": 1}
+    rolled = propagate(H, (0, 1), start(len(q))[:, 0], **by).y[:, -1]
+    asked: list[HamiltonEquations] = []
+    monkeypatch.setattr(splitting, "pair_forces", asked.append)
+    _kept_splitting.cache_clear()
+    written_out = propagate(H, (0, 1), start(len(q))[:, 0], **by).y[:, -1]
+    assert asked
+    assert abs(rolled - written_out).max() < 1e-13
 
 
 def test_lanes_give_the_bits_of_one_orbit() -> None:
