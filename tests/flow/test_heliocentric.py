@@ -1,9 +1,12 @@
 """Democratic heliocentric coordinates: orders, geometry, crossing orbits, and agreement with Jacobi's and heyoka."""
 
+import itertools
+
 import numpy as np
 import pytest
 import sympy as sp
 
+from canon import Hamiltonian, coordinates
 from canon.flow.method.method import Splitting, Taylor
 from canon.flow.method.solvable_splitting import SABA, SBAB, WisdomHolman
 from canon.flow.propagation import propagate
@@ -99,6 +102,33 @@ def test_momentum_angular_momentum_and_the_centre_of_mass():
     assert abs(motion.changes["P"]).max() < 1e-17
     assert abs(motion.changes["L"]).max() < 1e-15
     np.testing.assert_allclose(motion.changes["C"], motion.observables["P"][0] * motion.t, atol=1e-14)
+
+
+def test_seventeen_planets_fill_no_power_of_two_lanes():
+    """Twenty-four lanes hold them; in Jacobi's coordinates, which need no sum over all, they move as well."""
+    count = 17
+    q = coordinates(" ".join(f"x{k} y{k}" for k in range(count + 1)))
+    places, masses = (
+        list(zip(q[::2], q[1::2], strict=True)),
+        [1, *(sp.Rational(k, 10**8) for k in range(1, 18))],
+    )
+    pairs = itertools.combinations(zip(places, masses, strict=True), 2)
+    H = Hamiltonian(
+        sp.Add(
+            *((x.momentum**2 + y.momentum**2) / (2 * m) for (x, y), m in zip(places, masses, strict=True)),
+            *(-m * n / sp.sqrt((x - u) ** 2 + (y - v) ** 2) for ((x, y), m), ((u, v), n) in pairs),
+        ),
+        q, [s.momentum for s in q],
+    )  # fmt: skip
+    r, angle = 1 + 0.5 * np.arange(count), 2.4 * np.arange(count)
+    place = r * np.exp(1j * angle)
+    momentum = 1j * np.exp(1j * angle) / np.sqrt(r) * np.array(masses[1:], dtype=float)
+    start = np.concatenate([[0, 0], place.view(float), [0, 0], momentum.view(float)])
+    ends = [
+        propagate(H, (0, 10), start, method=WisdomHolman(**how), step=0.05, samples=1).y[: 2 * count + 2, -1]
+        for how in ({}, DEMOCRATIC)
+    ]
+    assert 0 < abs(ends[0] - ends[1]).max() < 1e-9  # of 1e-6, if one planet's share were left out of the sum
 
 
 def test_the_order_of_the_planets_does_not_matter():
