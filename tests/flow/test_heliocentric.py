@@ -174,8 +174,8 @@ def test_any_number_of_planets_in_both_coordinates(count):
     true = propagate(
         system, (0, 1), start, method=Splitting("sofroniou-spaletta-10"), step=1 / 64, samples=1
     ).final
-    for coordinates in ("jacobi", "democratic-heliocentric"):
-        method = SABA("10-6-4", coordinates=coordinates)
+    for chart in ("jacobi", "democratic-heliocentric"):
+        method = SABA("10-6-4", coordinates=chart)
         found = propagate(system, (0, 1), start, method=method, step=0.125, samples=1).final
         assert abs(found - true).max() < 3e-13 * abs(true).max()
 
