@@ -9,7 +9,8 @@ The changes are those of cosmic-ray's operators, and of a few that it lacks (`mu
 by the seed. First the quick tests run under coverage.py, so that each line is known with the tests that execute it.
 Then each mutant meets those tests, the quickest first, up to a bound of time. What does not end is killed too. Tests
 that fail on canon as it is do not count. Every survivor is read; `mutants/survivors.toml` says why it changes nothing,
-or which test was written for it. All is kept in out/mutation, so an interrupted run goes on where it stopped.
+or which test was written for it. What came of them is kept in results/mutation, and all else in out/mutation, so an
+interrupted run goes on where it stopped, on another machine too.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ from mutants.trial import ONCE_MORE, Trial, copy_of_checkout, failing, trial, wa
 HOME = Path(__file__).parents[1]
 KEPT = HOME / "out" / "mutation"
 RECORD, CACHES = (KEPT / name for name in ("record", "caches"))
+FOUND = Path(__file__).parent / "results" / "mutation"
 SURVIVORS = Path(__file__).parent / "mutants" / "survivors.toml"
 
 
@@ -47,7 +49,7 @@ def main(arguments: list[str]) -> None:
     said = parser.parse_args(arguments)
     place = Place(KEPT / f"checkout-{said.part[0]}", KEPT / f"log-{said.part[0]}")
     explained = {key for key, each in explanations().items() if "test" not in each}
-    results = KEPT / f"results-{said.count}-{said.seed}.jsonl"
+    results = FOUND / f"results-{said.count}-{said.seed}.jsonl"
     mutants = kept_or_drawn(said.count, said.seed)
     found = read_results(results)
     alive = {key for key, each in found.items() if each.outcome == "survived" and key not in explained}
@@ -56,7 +58,8 @@ def main(arguments: list[str]) -> None:
     gone = [mutant for mutant in left if not is_there(HOME, mutant)]
     if gone:
         print(
-            f"{len(gone)} mutants are of lines that have changed; delete {KEPT} to draw anew", file=sys.stderr
+            f"{len(gone)} mutants are of lines that have changed; delete {FOUND} to draw anew",
+            file=sys.stderr,
         )
         left = [mutant for mutant in left if mutant not in gone]
     if left:
@@ -82,9 +85,9 @@ def _part(text: str) -> tuple[int, int]:
 
 def kept_or_drawn(count: int, seed: int) -> list[Mutant]:
     """Return the mutants of a seed; they stay what they were when the sources change."""
-    path = KEPT / f"mutants-{count}-{seed}.jsonl"
+    path = FOUND / f"mutants-{count}-{seed}.jsonl"
     if not path.exists():
-        KEPT.mkdir(parents=True, exist_ok=True)
+        FOUND.mkdir(parents=True, exist_ok=True)
         lines = [json.dumps(asdict(mutant), ensure_ascii=False) for mutant in drawn(HOME, count, seed)]
         path.write_text("\n".join(lines) + "\n", encoding="utf-8")
     return [Mutant(**json.loads(line)) for line in path.read_text(encoding="utf-8").splitlines()]
