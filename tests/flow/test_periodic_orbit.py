@@ -242,8 +242,8 @@ def test_what_falls_into_a_very_unstable_orbit_does_so_from_every_place() -> Non
             np.linalg.norm(propagate("restricted-three-body", (0, time), y[:, k], samples=1).final - place)
             for time, y in ((orbit.period, starts["stable"]), (-orbit.period, starts["unstable"]))
         ]
-        # The two are mirror images.
-        assert left[0] == pytest.approx(left[1], rel=1e-2)
+        # Mirror images, that fall by the largest multiplier; rounding by the Moon leaves some 1e-11 of them.
+        assert left == pytest.approx([1e-7 / abs(orbit.multipliers.values).max()] * 2, rel=0.1)
 
 
 @pytest.mark.slow
