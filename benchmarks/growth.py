@@ -20,7 +20,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -41,6 +41,14 @@ def used() -> float:
     return time.process_time() + children.ru_utime + children.ru_stime
 
 
+def _sites(count: int) -> Any:
+    """Return places, momenta and stretches of a chain between two walls."""
+    import sympy as sp
+
+    q, p = sp.symbols(f"q0:{count}", real=True), sp.symbols(f"p0:{count}", real=True)
+    return q, p, [b - a for a, b in zip((sp.Integer(0), *q), (*q, sp.Integer(0)), strict=True)]
+
+
 def chain(sites: int) -> Callable[[], object]:
     """From H, a sum that SymPy has built, to the state after the first step."""
     import numpy as np
@@ -48,8 +56,7 @@ def chain(sites: int) -> Callable[[], object]:
 
     from canon import Hamiltonian, Splitting, propagate
 
-    q, p = sp.symbols(f"q0:{sites}", real=True), sp.symbols(f"p0:{sites}", real=True)
-    stretches = [b - a for a, b in zip((sp.Integer(0), *q), (*q, sp.Integer(0)), strict=True)]
+    q, p, stretches = _sites(sites)
     H = sp.Add(*(x**2 / 2 for x in p), *(d**2 / 2 + d**4 / 40 for d in stretches))
     start = np.concatenate([np.sin(np.arange(sites)), np.zeros(sites)])
     how = {"method": Splitting("verlet"), "step": 0.01, "samples": 1}
@@ -63,8 +70,7 @@ def stiff(sites: int) -> Callable[[], object]:
 
     from canon import Gauss, Hamiltonian, propagate
 
-    q, p = sp.symbols(f"q0:{sites}", real=True), sp.symbols(f"p0:{sites}", real=True)
-    stretches = [b - a for a, b in zip((sp.Integer(0), *q), (*q, sp.Integer(0)), strict=True)]
+    q, p, stretches = _sites(sites)
     H = Hamiltonian(sp.Add(*(x**2 / 2 for x in p), *(5000 * (d**2 + d**4) for d in stretches)), q, p)
     start = np.concatenate([np.sin(np.arange(sites)) / 100, np.zeros(sites)])
     how = {"method": Gauss(3, iteration="newton"), "step": 0.05, "samples": 1}

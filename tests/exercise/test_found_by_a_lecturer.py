@@ -229,7 +229,13 @@ def test_figures_in_groups_of_three(claim: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("claim", "told"), [("100,200,300", "100200300, or 3 values"), ("27 °C", "from zero")]
+    ("claim", "told"),
+    [
+        ("100,200,300", "100200300, or 3 values"),
+        ("100 200 300", "100200300, or 3 values"),
+        ("12 345", "12345, or 2 values"),
+        ("27 °C", "from zero"),
+    ],
 )
 def test_what_two_numbers_may_be_meant_by_is_asked(claim: str, told: str) -> None:
     found = judged({"kind": "number", "claim": claim, "value": "300.15", "unit": "K"})

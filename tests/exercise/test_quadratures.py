@@ -3,6 +3,7 @@
 import pytest
 
 from canon.exercise.explained_judgement import judgements
+from canon.exercise.sheet.left_sides import is_action
 from canon.exercise.sheet.sheet import claim_from
 
 OSCILLATOR = {
@@ -139,3 +140,21 @@ def test_the_definition_of_an_action_before_its_value_is_passed_over(definition)
 @pytest.mark.parametrize("other", ["J = ∮ p dx = E/w", "J = (1/4π) ∮ p dx = E/w", "J = (1/2π) ∮ p dx"])
 def test_another_definition_is_not(other):
     assert judged_action(other).status == "invalid"
+
+
+PLAIN = "x*sqrt(2*m*E - m**2*w**2*x**2)/2 + E/w*asin(x*w*sqrt(m/(2*E)))"
+NOTHING = "(sin(x)**2 + cos(x)**2 - 1)"
+
+
+@pytest.mark.parametrize("where", ["log(x)", "sqrt(x)", "log(x)*log(2*x)", "log(E*x)"])
+def test_an_answer_does_not_choose_where_it_is_asked(where):
+    """Real logarithms times nothing leave W as it is, and a W that is wrong for x < 0 wrong."""
+    assert judged(OSCILLATOR, W=PLAIN).status == "holds"
+    assert judged(OSCILLATOR, W=f"{PLAIN} + {NOTHING}*{where} + Abs(x) - x").status == "fails"
+
+
+def test_many_blanks_are_no_work(processor_seconds):
+    before = processor_seconds()
+    for hostile in (" " * 20_000 + "x", r"\, " * 5_000, "(1/2π)" + " *" * 9_000, "∫p" + " " * 20_000):
+        assert not is_action(hostile, "W")
+    assert processor_seconds() - before < 0.5

@@ -75,10 +75,11 @@ _DEFINITIONS: Mapping[str, str] = {
     "I": r"[TK]\+[VU]|[VU]\+[TK]",
 }
 _ACTION = re.compile(
-    r"\s*\$?\s*(?P<share>\\[dt]?frac\s?\{?1\}?\s?\{\s?2\s?\\pi\s?\}|\(?1/\(?2\s?\*?\s?(?:π|pi|\\pi)\)?\)?)?"
-    r"(?:\s|\\[,;: ]|\*)*(?:\\o?int|[∫∮])\s*p(?:_\\?\w{1,9}|_\{\\?\w{1,9}\})?(?:\s|\\[,;: ])*"
-    r"(?:\\mathrm\s?\{d\}|\\dd|d)\s*\\?\w{1,9}\s*\$?\s*"
+    r"(?:(?P<share>\\[dt]?frac\s?\{?1\}?\s?\{\s?2\s?\\pi\s?\}|\(?1/\(?2\s?\*?\s?(?:π|pi|\\pi)\)?\)?)"
+    r"(?:\s|\\[,;: ]|\*){0,9})?(?:\\o?int|[∫∮])\s{0,9}p(?:_\\?\w{1,9}|_\{\\?\w{1,9}\})?(?:\s|\\[,;: ]){0,9}"
+    r"(?:\\mathrm\s?\{d\}|\\dd|d)\s{0,9}\\?\w{1,9}"
 )
+"""``∫ p dq``, and the share of it that an action is; repeats are bounded, or blanks are tried in too many ways."""
 _OF_ANY = r"[-−+]?∂[HLFKSRVUW][_0-9]{0,3}/∂[^-−+=∂*/(){}\[\]]{1,20}|\{[^={}]{1,20},H\}"
 """Derivatives of functions that are not given, and the bracket with H."""
 
@@ -304,7 +305,7 @@ def is_action(text: str, key: str) -> bool:
     """
     if key not in ("W", "S") and key.rstrip("0123456789_") != "J":
         return False
-    found = _ACTION.fullmatch(text)
+    found = _ACTION.fullmatch(text.strip(" $"))
     return found is not None and (found["share"] is None) == (key in ("W", "S"))
 
 

@@ -174,7 +174,8 @@ class Reading:
             f"the unit {unit} in {key} is passed over: numbers are read in any one consistent system of units"
             for key, unit in found
         )
-        real = [c for c in self.domain.conditions if c not in self._given_domain.conditions]
+        narrowed = self.domain.conditions if self.has("L") else ()
+        real = [c for c in narrowed if c not in self._given_domain.conditions]
         judged = [f"judged where L is real: {', '.join(map(str, real))}"] if real else []
         return (*self.passed, *units_passed, *judged)
 

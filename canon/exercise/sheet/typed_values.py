@@ -39,9 +39,11 @@ _NEARLY = re.compile(r"\\(?:approx|simeq|in)(?![A-Za-z])|[≈≃≅≐∈]|~=|(?
 _TEN = re.compile(r"(?<=[0-9])\s?([xX])\s?(?=10(?:\^|\*\*|[⁻⁺⁰¹²³⁴-⁹]))")
 _DOTS = re.compile(r"(?<=[0-9])(?:\.\.\.+|…|\\(?:dots|ldots|cdots)(?![A-Za-z]))")
 _COMMA = re.compile(r"(?<![0-9A-Za-z_.,])[0-9]+,[0-9]+(?![0-9,])")
-_THOUSANDS = re.compile(r"(?<![0-9A-Za-z_.,])[0-9]{1,3}(?:,[0-9]{3}){2,}(?![0-9,])")
-_GROUPS = re.compile(r"(?<![0-9A-Za-z_.,])[0-9]{1,3}(?:(?: |\u00a0|\u2009|\u202f|\\,)[0-9]{3})+(?![0-9])")
-"""Figures in groups of three, with gaps as the SI brochure has it (§5.4.4)."""
+_GROUPS = re.compile(
+    r"(?<![0-9A-Za-z_.,])[0-9]{1,3}"
+    r"(?:(?:,[0-9]{3}){2,}(?!,)|(?: [0-9]{3})+|(?:(?:[\u00a0\u2009\u202f]|\\,)[0-9]{3})+)(?![0-9])"
+)
+"""Figures in groups of three, with gaps as the SI brochure has it (§5.4.4), or with commas."""
 _STOP = re.compile(r"(?<=[A-Za-zΩ°²³)}])\s?\.\s*$")
 """The full stop of a sentence, behind a unit."""
 _SIGNS = re.compile(r"\\pm(?![A-Za-z])|\\mp(?![A-Za-z])|±|∓|\+/[-−]")
@@ -213,18 +215,19 @@ def _refuse_doubtful_figures(text: str, *, measured: bool) -> None:
 def _without_groups(text: str) -> str:
     r"""Return a text whose figures stand together, ``3600000`` for ``3 600 000``; every column after them is as it was.
 
+    Commas and blanks may part values as well: of ``100 200`` it is asked; no value begins as in ``3 600 000``.
+
     Examples
     --------
     >>> _without_groups("3,600,000 J"), _without_groups(r"3\,600\,000 J"), _without_groups("3; 600")
     ('3600000   J', '3600000     J', '3; 600')
     """
-    for found in _THOUSANDS.finditer(text):
-        groups = found.group().split(",")
-        if not any(group.startswith("0") for group in groups[1:]):
+    for found in _GROUPS.finditer(text):
+        groups = re.split("[, ](?=[0-9])", found.group())
+        if len(groups) > 1 and not any(group.startswith("0") for group in groups[1:]):
             whole, apart = "".join(groups), "; ".join(groups)
             reason = f"is {found.group()} the number {whole}, or {len(groups)} values?"
             raise LanguageError(text, found.start() + 1, reason, f"write {whole}, or {apart}")
-    text = _THOUSANDS.sub(lambda found: found.group().replace(",", "").ljust(len(found.group())), text)
     return _GROUPS.sub(lambda found: re.sub("[^0-9]", "", found.group()).ljust(len(found.group())), text)
 
 

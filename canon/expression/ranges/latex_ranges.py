@@ -49,9 +49,6 @@ class _Operator:
     end: int
 
 
-Read = "Callable[[str, int, int], Node]"
-
-
 def with_ranges(text: str, start: int, end: int, read: _Read) -> tuple[str, dict[int, Node]]:
     """Return a text with one sign for each integral and sum between two places, and their trees by place.
 

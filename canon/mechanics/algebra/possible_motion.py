@@ -17,7 +17,7 @@ from canon.proof.continuity.continuity import continuity
 from canon.proof.continuity.jumps import shown
 from canon.proof.continuity.one_sided import cuts_of
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
-from canon.proof.domain.domain import Domain
+from canon.proof.domain.domain import Domain, conditions_hold
 from canon.proof.domain.verdict import Counterexample, Evidence, Status, Verdict
 from canon.proof.rungs.ladder import is_empty
 from canon.proof.trees.sympy_types import arguments, free_symbols
@@ -26,7 +26,7 @@ from canon.proof.vanish import vanishes
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from sympy import Expr, Symbol
+    from sympy import Expr, Rational, Symbol
     from sympy.logic.boolalg import Boolean
 
 __all__ = ["motion_is_continuous", "motion_is_real", "where_real"]
@@ -45,17 +45,30 @@ def motion_is_real(motion: Mapping[Symbol, Expr], domain: Domain) -> Iterator[Ve
         yield _is_real(place, x, on_time)
 
 
-def where_real(functions: Sequence[Expr], domain: Domain) -> Domain:
+def where_real(functions: Sequence[Expr], domain: Domain, momenta: Sequence[Expr] = ()) -> Domain:
     """Return the part of a domain where square roots and logarithms are real: elsewhere there is no motion.
 
     Each root and logarithm is asked to be real by itself, as √(x³)/√x is written for x > 0. It is the domain itself
     where there is no such part, or where all of it is.
+
+    Parameters
+    ----------
+    functions
+        What is to be real.
+    domain
+        Where it is looked for.
+    momenta
+        Momenta that are claimed: beyond a bound where all of them are real there is motion too, and an answer that has
+        log x times what vanishes does not choose by it where it is asked.
 
     Examples
     --------
     >>> x = sp.Symbol("x", real=True)
     >>> where_real([x ** sp.Rational(3, 2) + sp.log(2 - x)], Domain()).conditions
     (x > 0, x < 2)
+    >>> p = sp.sqrt(1 - x**2) + (sp.sin(x)**2 + sp.cos(x)**2 - 1) * sp.log(x)
+    >>> where_real([p], Domain(), [p]).conditions
+    (1 - x**2 > 0,)
     """
     parts = sorted({part for f in functions for part in f.atoms(sp.Pow, sp.log)}, key=sp.default_sort_key)
     inside = dict.fromkeys(
@@ -64,10 +77,23 @@ def where_real(functions: Sequence[Expr], domain: Domain) -> Domain:
         if isinstance(part, sp.log) or (part.args[1].is_Rational and sp.fraction(part.args[1])[1] % 2 == 0)
     )
     open_ = [f for f in inside if f.is_extended_real and not proved_sign(f, domain).endswith("+")]
-    bounds = [sp.Gt(f, 0) for f in open_]
-    real = Domain((*domain.conditions, *(c for c in bounds if c not in (sp.true, sp.false))), domain.box)
+    bounds = [bound for f in open_ if (bound := sp.Gt(f, 0)) not in (sp.true, sp.false)]
     symbols = {s for f in functions for s in symbols_of(f)}
+    for point in domain.points(symbols, POINTS) if momenta and bounds else ():
+        beyond = [bound for bound in bounds if not conditions_hold([bound], point)]
+        if beyond and all(_is_real_at(p, point) for p in momenta):
+            bounds = [bound for bound in bounds if bound not in beyond]
+    real = Domain((*domain.conditions, *bounds), domain.box)
     return real if bounds and next(iter(real.points(symbols, 1)), None) is not None else domain
+
+
+def _is_real_at(f: Expr, point: Mapping[Symbol, Rational]) -> bool:
+    """Tell whether a function may be real at a point, as far as its value there is known."""
+    with precision(128):
+        try:
+            return bool(value(f, point).imag.contains(0))
+        except (NotDecided, Undefined, Unmodelled):
+            return False
 
 
 def motion_is_continuous(

@@ -77,7 +77,7 @@ def complete_integral(reading: Reading) -> Iterator[Question]:
         for (a, f), (b, g) in combinations(zip(q, slopes, strict=True), 2)
         if name == "gradient"
     ]
-    real = where_real((*slopes, *([] if rest is None else [rest])), reading.domain)
+    real = where_real((*slopes, *([] if rest is None else [rest])), reading.domain, slopes)
     yield Same(tuple(parts), real, _no_answer)
     yield Regular(
         sp.Matrix([[f.diff(c) for c in constants] for f in slopes]),

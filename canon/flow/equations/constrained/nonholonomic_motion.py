@@ -96,6 +96,7 @@ def _nonholonomic(
     masses = [graph.gradient(p, v) for p in momenta]
     flat = [mass for row in masses for mass in row]
     _check_masses(values_at_start(graph, flat, start, "the mass matrix"), q)
+    slopes_of_pull = [graph.gradient(f, (*q, *v)) for f in pull]
     constraints = [residual.node for residual in motion.residuals if not residual.left_out]
     moving = {*q, *v, motion.t}
     return NonholonomicSystem(
@@ -106,11 +107,11 @@ def _nonholonomic(
         turning=tuple(
             tuple(
                 graph.add((a, graph.negative(b)))
-                for a, b in zip(graph.gradient(p, q), graph.gradient(f, v), strict=True)
+                for a, b in zip(graph.gradient(p, q), of_pull[n:], strict=True)
             )
-            for p, f in zip(momenta, pull, strict=True)
+            for p, of_pull in zip(momenta, slopes_of_pull, strict=True)
         ),
-        stiffness=tuple(graph.gradient(f, q) for f in pull),
+        stiffness=tuple(of_pull[:n] for of_pull in slopes_of_pull),
         rows=tuple(tuple(row[:n]) for row in motion.matrix[n:]),
         rests=tuple(graph.substitute(constraints, at_rest)),
         slopes=tuple(graph.gradient(g, q) for g in constraints),
