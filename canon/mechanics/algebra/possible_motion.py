@@ -70,14 +70,7 @@ def where_real(functions: Sequence[Expr], domain: Domain, momenta: Sequence[Expr
     >>> where_real([p], Domain(), [p]).conditions
     (1 - x**2 > 0,)
     """
-    parts = sorted({part for f in functions for part in f.atoms(sp.Pow, sp.log)}, key=sp.default_sort_key)
-    inside = dict.fromkeys(
-        part.args[0]
-        for part in parts
-        if isinstance(part, sp.log) or (part.args[1].is_Rational and sp.fraction(part.args[1])[1] % 2 == 0)
-    )
-    open_ = [f for f in inside if f.is_extended_real and not proved_sign(f, domain).endswith("+")]
-    bounds = [bound for f in open_ if (bound := sp.Gt(f, 0)) not in (sp.true, sp.false)]
+    bounds = _bounds(functions, domain)
     symbols = {s for f in functions for s in symbols_of(f)}
     for point in domain.points(symbols, POINTS) if momenta and bounds else ():
         beyond = [bound for bound in bounds if not conditions_hold([bound], point)]
@@ -85,6 +78,18 @@ def where_real(functions: Sequence[Expr], domain: Domain, momenta: Sequence[Expr
             bounds = [bound for bound in bounds if bound not in beyond]
     real = Domain((*domain.conditions, *bounds), domain.box)
     return real if bounds and next(iter(real.points(symbols, 1)), None) is not None else domain
+
+
+def _bounds(functions: Sequence[Expr], domain: Domain) -> list[Boolean]:
+    """Return that what stands under each square root and in each logarithm is positive, where it is not known to be."""
+    parts = sorted({part for f in functions for part in f.atoms(sp.Pow, sp.log)}, key=sp.default_sort_key)
+    inside = dict.fromkeys(
+        part.args[0]
+        for part in parts
+        if isinstance(part, sp.log) or (part.args[1].is_Rational and sp.fraction(part.args[1])[1] % 2 == 0)
+    )
+    open_ = [f for f in inside if f.is_extended_real and not proved_sign(f, domain).endswith("+")]
+    return [bound for f in open_ if (bound := sp.Gt(f, 0)) not in (sp.true, sp.false)]
 
 
 def _is_real_at(f: Expr, point: Mapping[Symbol, Rational]) -> bool:
