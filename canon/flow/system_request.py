@@ -23,13 +23,11 @@ from canon.flow.checked_request import (
     two_ends,
 )
 from canon.flow.equations.bounce import with_bounces
-from canon.flow.equations.constrained.holonomic_motion import with_constraints_kept
-from canon.flow.equations.constrained.nonholonomic_motion import with_velocity_constraints_kept
 from canon.flow.equations.first_order_motion import moving_system
-from canon.flow.equations.lagrangian_motion import SPAN, with_momenta_and_forces
-from canon.flow.equations.poisson_motion import with_lie_poisson_parts
+from canon.flow.equations.lagrangian_motion import SPAN
 from canon.flow.method.method_text import method_of
 from canon.flow.run.event import Event
+from canon.flow.system.equations_for_method import KEEPING_CONSTRAINTS, Derivation, for_method
 from canon.flow.system.hamiltonian_map import (
     DRIFT_AND_KICK,
     KICK_AND_DRIFT,
@@ -37,6 +35,7 @@ from canon.flow.system.hamiltonian_map import (
     check_whole,
     kicked,
 )
+from canon.flow.system.kept_equations import kept_equations
 from canon.flow.system.parameter_values import SpareParameters, check_given, check_known, check_parameters
 from canon.flow.system.recognised_system import recognised
 from canon.flow.system.scene_as_system import is_named, is_scene, opened, scene_of
@@ -258,23 +257,25 @@ def _system_task(request: Request) -> tuple[Task, MovingSystem]:
     start |= {by_name[name]: values.astype(np.float64) for name, values in varying.items()}
     start |= dict(zip(found.state, states[0].reshape(len(found.state), -1), strict=True))
     first = {s: float(np.ravel(value)[0]) for s, value in start.items()}
-    motion, met = with_bounces(found.derived(first), met, first)
+    numbers, orbits_of = exact_numbers(fixed), [by_name[name] for name in varying]
+    chosen = method_of(request.method)
+    derived = kept_equations(found.system, numbers, orbits_of, chosen.family).from_start(found, first)
+    motion, met = with_bounces(derived.motion, met, first)
     hidden = _contacts_at_start(motion, orbits)
     check_constraints(motion, start | hidden, _words(motion))
     if motion.contacts is not None:
         _check_direction(motion.contacts, ends)
         met = (*met, *(event for contact in motion.contacts.each for event in contact.events))
     unit = _work_unit(motion, first | hidden)
-    moving = moving_system(motion, exact_numbers(fixed), [by_name[name] for name in varying], unit)
-    chosen = method_of(request.method)
-    _check_method(chosen, moving)
-    orbits_of = [by_name[name] for name in varying]
-    if (kept := _KEEPING_CONSTRAINTS.get(chosen.family)) is not None:
-        moving = kept(found.system, motion, moving, exact_numbers(fixed), first, orbits_of)
-    if chosen.family == "galerkin":
-        moving = with_momenta_and_forces(found.system, motion, moving, exact_numbers(fixed), orbits_of)
-    if chosen.family == "lie_poisson":
-        moving = with_lie_poisson_parts(request.system, moving, exact_numbers(fixed), orbits_of)
+    moving = derived.moving.get(unit) if motion is derived.motion else None
+    if moving is None:
+        moving = moving_system(motion, numbers, orbits_of, unit)
+        _check_method(chosen, moving)
+        moving = for_method(
+            moving, Derivation(request.system, found, motion, numbers, first, orbits_of), chosen
+        )
+        if motion is derived.motion:
+            derived.moving[unit] = moving
     full = _full_states(moving, states, varying, orbits)
     checked = replace(request, method=chosen, observables=observed, events=met)
     return course_with(checked, moving.equations, ends).task(full, single=single), moving
@@ -356,9 +357,11 @@ def _contacts_at_start(motion: FirstOrderMotion, orbits: int) -> dict[Symbol, An
 
 
 def _work_unit(motion: FirstOrderMotion, start: Mapping[Symbol, float]) -> Fraction:
-    """Return the power of 2 next to the size of the energy, or of what is done in the span."""
+    """Return the power of 2 next to the size of the energy, or of what is done in the span; 1 where no work is done."""
     graph = motion.graph
     if motion.energy is None or motion.power is None:
+        return Fraction(1)
+    if motion.power == graph.zero and motion.contacts is None:
         return Fraction(1)
     kind, operands, _ = graph.nodes[motion.energy]
     terms = operands if kind == "add" else (motion.energy,)
@@ -387,13 +390,7 @@ def _words(motion: FirstOrderMotion) -> list[str]:
     return said
 
 
-_KEEPING_CONSTRAINTS = {
-    "rattle": with_constraints_kept,
-    "nonholonomic_leapfrog": with_velocity_constraints_kept,
-}
-"""What gives the equations of a system to the methods that keep constraints themselves."""
-
-_FOR_ANY_SYSTEM = ("taylor", "dop853", "rk4", "gauss", *_KEEPING_CONSTRAINTS, "lie_poisson", "galerkin")
+_FOR_ANY_SYSTEM = ("taylor", "dop853", "rk4", "gauss", *KEEPING_CONSTRAINTS, "lie_poisson", "galerkin")
 """Families of methods that need no Hamiltonian."""
 
 

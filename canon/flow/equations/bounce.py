@@ -44,6 +44,8 @@ def with_bounces(
     ValueError
         The system has no mass matrix to bounce with, or g is no wall g(q, t) = 0.
     """
+    if all(event.action != "bounce" for event in events):
+        return motion, tuple(events)
     named, made = dict(motion.named), list["Event"]()
     for event in events:
         if event.action != "bounce":

@@ -112,7 +112,7 @@ class Regimes:
             named=named,
             multipliers=every,
             reactions=tuple(graph.add(pair) for pair in zip(kept, added, strict=True)),
-            matrix=(),
+            masses=tuple,
             residuals=(*free.residuals, *self._residuals()),
         )
 

@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from canon.cached_property import cached_property
 from canon.frozen_mapping import FrozenMapping
 from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from sympy import Symbol
 
@@ -124,10 +125,13 @@ class FirstOrderMotion:
         The nodes of λ, one a constraint, and of the generalized forces of constraint, one a coordinate.
     residuals
         What the constraints make vanish: positions, then rates.
-    matrix
-        The matrix of masses and constraints that impulses go through, nodes; empty where none is known.
+    masses
+        What gives the matrix of masses and constraints, if it is asked for.
     contacts
         Unilateral constraints, which open and close.
+    holds_from
+        Whether the equations are these from a start too, for which others may have been derived; it raises ValueError
+        where they do not determine the motion there.
     """
 
     kind: str
@@ -143,8 +147,14 @@ class FirstOrderMotion:
     multipliers: tuple[int, ...] = ()
     reactions: tuple[int, ...] = ()
     residuals: tuple[Residual, ...] = ()
-    matrix: tuple[tuple[int, ...], ...] = ()
+    masses: Callable[[], tuple[tuple[int, ...], ...]] = tuple
     contacts: Contacts | None = None
+    holds_from: Callable[[Mapping[Symbol, float]], bool] = field(default=lambda _: False)
+
+    @cached_property
+    def matrix(self) -> tuple[tuple[int, ...], ...]:
+        """The matrix of masses and constraints that impulses go through, nodes; empty where none is known."""
+        return self.masses()
 
     @property
     def state(self) -> tuple[Symbol, ...]:

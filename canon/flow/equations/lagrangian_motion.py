@@ -9,6 +9,7 @@ Q·q̇ + Σ λ (a·q̇) − ∂L/∂t, and a·q̇ = −a₀ on the constraints.
 
 from __future__ import annotations
 
+import functools
 from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -17,9 +18,17 @@ import numpy as np
 import sympy as sp
 
 from canon.expression.symbols.symbol import acceleration, momentum
-from canon.expression.symbols.user_input import counted
+from canon.flow.equations.articulated_motion import articulated_motion
 from canon.flow.equations.first_order_motion import FirstOrderMotion, Residual
-from canon.flow.equations.linear_equations import SingularAtStartError, independent_rows, solved_from_start
+from canon.flow.equations.linear_equations import (
+    SingularAtStartError,
+    balanced_masses,
+    has_diagonal_pivots,
+    independent_rows,
+    refuse_infinite,
+    solved_from_start,
+    undetermined,
+)
 from canon.kernel.program.lagrangian.momenta_and_forces import MomentaAndForces
 from canon.mechanics.at_scale.constrained import constrained
 from canon.mechanics.at_scale.second_order import derivation_of_lagrangian
@@ -105,6 +114,8 @@ def lagrangian_motion(
     ([x_dot, -x - x_dot/10], -x_dot**2/10)
     """
     lagrangian, holonomic, nonholonomic = constraints_of(system)
+    if not holonomic and not nonholonomic and (free := articulated_motion(lagrangian, start)) is not None:
+        return free
     found = derivation_of_lagrangian(lagrangian)
     graph, q, v, t, n = found.graph, found.q, found.velocities, found.t, len(found.q)
     bound, left_out = _parted(found, holonomic, nonholonomic, start)
@@ -114,7 +125,7 @@ def lagrangian_motion(
     try:
         solved = solved_from_start(graph, matrix, right, values.reshape(len(matrix), -1))
     except SingularAtStartError as singular:
-        raise ValueError(_undetermined(singular, v, where)) from None
+        raise ValueError(undetermined(singular, v, where)) from None
     accelerations, kept = solved[:n], tuple(map(graph.negative, solved[n:]))
     if bound is not None:
         alpha = graph.number(
@@ -144,12 +155,25 @@ def lagrangian_motion(
         named=named,
         multipliers=multipliers,
         reactions=tuple(_dot(graph, kept, [row[i] for row in A]) for i in range(n)) if multipliers else (),
-        matrix=tuple(map(tuple, matrix)),
+        masses=lambda: tuple(map(tuple, matrix)),
         residuals=(
             *_residuals(graph, bound, speeds),
             *(replace(r, left_out=True) for _, more in left_out for r in _residuals(graph, more, speeds)),
         ),
+        holds_from=functools.partial(_pivots_hold, found) if bound is None else _never,
     )
+
+
+def _never(_start: Mapping[Symbol, float]) -> bool:
+    return False
+
+
+def _pivots_hold(found: SecondOrderEquations, start: Mapping[Symbol, float]) -> bool:
+    """Tell whether elimination without exchanges of rows solves M q̈ = f from a start."""
+    n, where = len(found.q), "the mass matrix"
+    nodes = [found.M[max(i, j)][min(i, j)] for i in range(n) for j in range(n)]
+    values = values_at_start(found.graph, nodes, start, where)
+    return has_diagonal_pivots(balanced_masses(values.reshape(n, n), found.velocities, where))
 
 
 def values_at_start(graph: Graph, nodes: Sequence[int], start: Mapping[Symbol, float], what: str) -> Array:
@@ -162,10 +186,7 @@ def values_at_start(graph: Graph, nodes: Sequence[int], start: Mapping[Symbol, f
     """
     point = {**start, _PULL: 0.0}
     found = np.array([float(x) for x in graph.evaluate(nodes, point)])
-    if not np.isfinite(found).all():
-        raise ValueError(
-            f"{what} is not finite at the start: begin inside the domain of the system's functions"
-        )
+    refuse_infinite(found, what)
     return found
 
 
@@ -244,15 +265,6 @@ def _with_gaps(graph: Graph, kept: Sequence[int], gaps: Sequence[int]) -> tuple[
     """Return the multipliers of all constraints: 0 for those left out."""
     given = iter(kept)
     return tuple(graph.zero if i in gaps else next(given) for i in range(len(kept) + len(gaps)))
-
-
-def _undetermined(singular: SingularAtStartError, v: Sequence[Symbol], where: str) -> str:
-    moved = [f"{v[i]}" for i in range(len(v)) if abs(singular.direction[i]) > 1e-6]
-    along = f" along {', '.join(moved)}" if moved else ""
-    return (
-        f"{where} is singular at the start{along}: L does not determine {counted(len(v), 'acceleration')} there. Use "
-        "fewer coordinates, add the constraints that hold the others, or start elsewhere"
-    )
 
 
 def _dot(graph: Graph, a: Sequence[int], b: Sequence[int]) -> int:

@@ -6,17 +6,27 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from canon.expression.symbols.user_input import counted
 from canon.mechanics.at_scale.ldl import solved_on_graph
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
+    from sympy import Symbol
 
     from canon.array import Array
     from canon.expression.graph.graph import Graph
 
-__all__ = ["SingularAtStartError", "independent_rows", "solved_from_start"]
+__all__ = [
+    "SingularAtStartError",
+    "balanced_masses",
+    "has_diagonal_pivots",
+    "independent_rows",
+    "refuse_infinite",
+    "solved_from_start",
+    "undetermined",
+]
 
 _SMALL = 1e-11
 """A singular value below this part of the largest, in units in which masses are 1, is taken for round-off."""
@@ -71,6 +81,21 @@ def solved_from_start(
     >>> [graph.to_sympy(node) for node in x]
     [b/a, 1]
     """
+    balanced = _balanced(values, symmetric=symmetric)
+    if symmetric and has_diagonal_pivots(balanced):
+        lower = [list(row[: i + 1]) for i, row in enumerate(matrix)]
+        return solved_on_graph(graph, lower, right)
+    return _eliminated(graph, matrix, right, balanced)
+
+
+def _balanced(values: Array, *, symmetric: bool = True) -> Array:
+    """Return a matrix of numbers in the units best for it, which have nothing to do with those of a user.
+
+    Raises
+    ------
+    SingularAtStartError
+        It is singular.
+    """
     columns = _units(values) if symmetric else _reciprocals(np.abs(values).max(axis=0, initial=0.0))
     balanced = values * columns
     rows = columns if symmetric else _reciprocals(np.abs(balanced).max(axis=1, initial=0.0))
@@ -79,10 +104,39 @@ def solved_from_start(
     if not singular.size or singular[-1] <= _SMALL * singular[0]:
         null = directions[-1] * columns
         raise SingularAtStartError(null / np.abs(null).max())
-    if symmetric and _has_diagonal_pivots(balanced):
-        lower = [list(row[: i + 1]) for i, row in enumerate(matrix)]
-        return solved_on_graph(graph, lower, right)
-    return _eliminated(graph, matrix, right, balanced)
+    return balanced
+
+
+def balanced_masses(values: Array, velocities: Sequence[Symbol], where: str) -> Array:
+    """Return the masses at a start in the units best for them.
+
+    Raises
+    ------
+    ValueError
+        They do not determine the accelerations there.
+    """
+    try:
+        return _balanced(values)
+    except SingularAtStartError as singular:
+        raise ValueError(undetermined(singular, velocities, where)) from None
+
+
+def undetermined(singular: SingularAtStartError, velocities: Sequence[Symbol], where: str) -> str:
+    """Return in words which accelerations are left open."""
+    moved = [f"{v}" for v, share in zip(velocities, singular.direction, strict=False) if abs(share) > 1e-6]
+    along = f" along {', '.join(moved)}" if moved else ""
+    return (
+        f"{where} is singular at the start{along}: L does not determine {counted(len(velocities), 'acceleration')} "
+        "there. Use fewer coordinates, add the constraints that hold the others, or start elsewhere"
+    )
+
+
+def refuse_infinite(values: Array, what: str) -> None:
+    """Raise ValueError where values at the start are not finite."""
+    if not np.isfinite(values).all():
+        raise ValueError(
+            f"{what} is not finite at the start: begin inside the domain of the system's functions"
+        )
 
 
 def _units(values: Array) -> Array:
@@ -123,7 +177,7 @@ def independent_rows(values: Array) -> list[int]:
     return kept
 
 
-def _has_diagonal_pivots(values: NDArray[np.float64]) -> bool:
+def has_diagonal_pivots(values: NDArray[np.float64]) -> bool:
     """Return whether elimination without exchanges meets no small pivot."""
     rest = values.copy()
     for k in range(len(rest)):

@@ -34,7 +34,7 @@ def field_motion(field: VectorField, t: Symbol = time) -> FirstOrderMotion:
     """
     graph = Graph()
     rates = tuple(graph.from_sympy(given_expression(f, "the vector field")) for f in field.components)
-    return FirstOrderMotion("vector field", graph, field.x, (), "x", t, rates)
+    return FirstOrderMotion("vector field", graph, field.x, (), "x", t, rates, holds_from=lambda _: True)
 
 
 def is_heyoka_system(given: Any) -> bool:

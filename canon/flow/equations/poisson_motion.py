@@ -45,7 +45,7 @@ def poisson_motion(system: PoissonSystem) -> FirstOrderMotion:
     changes = graph.derivative(H, system.t)
     power = None if changes == graph.zero else changes
     return FirstOrderMotion(
-        "Poisson system", graph, system.x, (), "x", system.t, rates, energy=H, power=power
+        "Poisson system", graph, system.x, (), "x", system.t, rates, H, power, holds_from=lambda _: True
     )
 
 

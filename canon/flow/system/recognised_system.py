@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -183,6 +184,12 @@ def _with(
     derived: Callable[[Mapping[Symbol, float]], FirstOrderMotion],
     unknown: Sequence[Symbol] = (),
 ) -> RecognisedSystem:
-    used: set[Any] = set().union(*(f.free_symbols for f in said))
+    used = frozenset[Any]().union(*map(_symbols, said))
     parameters = sorted(used - {*state, t, *unknown}, key=lambda s: s.name)
     return RecognisedSystem(tuple(state), t, tuple(parameters), derived)
+
+
+@functools.lru_cache(maxsize=256)
+def _symbols(f: Expr) -> frozenset[Any]:
+    """Return the symbols of an expression, for which SymPy walks the whole tree, as of an earlier call."""
+    return frozenset(f.free_symbols)

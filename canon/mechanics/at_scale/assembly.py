@@ -62,7 +62,7 @@ class Assembly:
                     energies.append(graph.negative(graph.plain_mul(factors)))
         return energies
 
-    def _rate(self, node: int, factor: int) -> list[int]:
+    def rate(self, node: int, factor: int) -> list[int]:
         """Return the terms of the rate of a function of q and t times a factor, products of velocities shared."""
         graph = self.graph
         found = self._rates.get((node, factor))
@@ -94,9 +94,9 @@ class Assembly:
         The field stands first, so that bodies of a chain add it once.
         """
         terms = [] if c.load is None else [self.graph.negative(c.load)]
-        terms += [term for i, a in c.slopes for term in self._rate(a, self.v[i])]
+        terms += [term for i, a in c.slopes for term in self.rate(a, self.v[i])]
         if c.rest is not None:
-            terms += self._rate(c.rest, self.graph.one)
+            terms += self.rate(c.rest, self.graph.one)
         return self.sums.of(tuple(term for term in terms if term != self.graph.zero))
 
     def projected(self, along: Sequence[int]) -> list[int]:
@@ -149,12 +149,14 @@ class Assembly:
             return
         terms: dict[int, list[int]] = defaultdict(list)
         for i, a in c.slopes:
-            terms[i].extend(map(self.graph.negative, self._rate(a, self.graph.one)))
+            terms[i].extend(map(self.graph.negative, self.rate(a, self.graph.one)))
         for i, slope in self._slopes_of_speed(c):
             terms[i].append(slope)
-        momentum = self.graph.plain_mul((c.weight, self.speed(c)))
         for i, parts in terms.items():
-            yield i, self.graph.plain_mul((momentum, self.graph.add(parts)))
+            total = self.graph.add(parts)
+            if total != self.graph.zero:
+                momentum = self.graph.plain_mul((c.weight, self.speed(c)))
+                yield i, self.graph.plain_mul((momentum, total))
 
     def mass_matrix(self) -> tuple[tuple[int, ...], ...]:
         """Return Σ w aᵢ aⱼ, i ≥ j: the weights that a pair of slopes shares are added and put to aᵢ first.
