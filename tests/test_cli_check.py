@@ -110,6 +110,14 @@ def test_exit_status(tmp_path, capsys, claims, arguments, status):
     capsys.readouterr()
 
 
+def test_a_report_that_cannot_be_written_gives_2(tmp_path, capsys):
+    page = str(tmp_path / "no folder" / "report.html")
+    assert main(["check", write(tmp_path, TRUE), "--html", page]) == 2
+    told = capsys.readouterr()
+    assert "✓ holds     yes" in told.out
+    assert f"{page}: can't be written (No such file or directory)" in told.err
+
+
 def test_an_undecided_claim_gives_3(tmp_path, capsys):
     hard = {"id": "hard", "kind": "equality-only", "lhs": "LambertW(exp(sin(1) + LambertW(2)))", "budget": 0.5,
             "rhs": "LambertW(exp(sin(1) + LambertW(2))) + LambertW(3)*exp(LambertW(3)) - 3 + 0*t"}  # fmt: skip

@@ -158,6 +158,7 @@ def test_a_killed_worker_leaves_no_process_behind():
     with Worker() as worker:
         worker.judge(claim_from(GOOD))
         group = worker._child.pid
+        assert os.getpgid(group) == group
         limits = Path(f"/proc/{group}/limits")
         if limits.exists():
             assert f"Max address space         {MEMORY}" in limits.read_text("utf-8")

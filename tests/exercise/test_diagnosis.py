@@ -10,7 +10,7 @@ import sympy as sp
 
 from canon.exercise.claim_verdict import examine
 from canon.exercise.diagnose.change import Mistake
-from canon.exercise.diagnose.diagnosis import judged_to_hold
+from canon.exercise.diagnose.diagnosis import Proof, judged_to_hold
 from canon.exercise.diagnose.diagnosis_search import diagnosis
 from canon.exercise.diagnose.effort import Effort
 from canon.exercise.diagnose.right_answer import corrected
@@ -245,6 +245,26 @@ CLAIMED = {c.id: c for path in DATA for c in read_sheet(path).claims}
 )
 def test_a_statement_is_held_against_the_claim_of_what_it_names(name, sentence, right):
     assert is_so(CLAIMED[name], sentence) == right
+
+
+PENDULUM = {"q": ["theta"], "parameters": {"m": "positive", "l": "positive", "g": "positive"},
+            "L": "m*l**2*theta_dot**2/2 + m*g*l*cos(theta)"}  # fmt: skip
+BENT = "l**2*theta_dot**2/2 + g*l*cos(theta)*sqrt(1 + sin(theta)**4)"
+SIZES = {"dimensions": {"m": "mass", "l": "length", "g": "m/s^2", "theta": "1"}}
+
+
+@pytest.mark.parametrize(
+    ("kind", "keys", "proof"),
+    [
+        ("euler-lagrange", {"claim": ["l*theta_ddot - g*sin(theta)"]}, Proof.REPAIRED),
+        ("euler-lagrange", {"L": BENT, "claim": ["l*theta_ddot + g*theta"]}, Proof.COMPARED),
+        ("legendre-hamiltonian", {"p": ["p"], "H": "7*g*l*p**3", **SIZES}, Proof.JUDGED),
+    ],
+)
+def test_a_diagnosis_says_how_it_is_known(kind: str, keys: dict[str, object], proof: Proof) -> None:
+    found = diagnosis(examine(Claim("a", kind, {**PENDULUM, **keys})))
+    assert found.proof is proof
+    assert (found.repaired is not None) == (proof is Proof.REPAIRED)
 
 
 def test_a_slip_behind_a_derivative_is_passed_over():

@@ -144,6 +144,13 @@ def test_what_a_teacher_types(one, other):
     assert dimension_from(one) == dimension_from(other)
 
 
+def test_brackets_are_counted() -> None:
+    assert dimension_from("(" * 8 + "m" + ")" * 8) == dimension_from("length")
+    assert dimension_from("*".join(["(m)"] * 12)) == dimension_from("m^12")
+    with pytest.raises(DimensionError, match="more than 8 brackets inside each other"):
+        dimension_from("(" * 9 + "m" + ")" * 9)
+
+
 @pytest.mark.parametrize(
     ("text", "why"),
     [

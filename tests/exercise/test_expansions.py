@@ -26,6 +26,7 @@ def told(exact, small, claim, order=1, **more):
         ("elliptic_e(x, m)", "m", 1, "x - m*(x/4 - sin(2*x)/8)", "x - m*(x/2 - sin(2*x)/4)"),
         ("elliptic_k(1/2 + m)", "m", 1, "elliptic_k(1/2) + m*(2*elliptic_e(1/2) - elliptic_k(1/2))",
          "elliptic_k(1/2) + m*(4*elliptic_e(1/2) - 2*elliptic_k(1/2))"),
+        ("elliptic_pi(m, 0)", "m", 1, "pi/2*(1 + m/2)", "pi/2*(1 + m)"),
         (PERIOD, "A", 2, "2*pi*sqrt(l/g)*(1 + A**2/16)", "2*pi*sqrt(l/g)*(1 + A**2/8)"),
         (PERIOD, "A", 4, "2*pi*sqrt(l/g)*(1 + A**2/16 + 11*A**4/3072)", "2*pi*sqrt(l/g)*(1 + A**2/16 + 11*A**4/1536)"),
         (PERIOD, "A", 1, "2*pi*sqrt(l/g)", "pi*sqrt(l/g)"),
@@ -47,7 +48,7 @@ def test_an_expansion_and_its_wrong_twin(exact, small, order, right, wrong):
 
 @pytest.mark.parametrize(
     "exact", ["elliptic_k(1 + m)", "elliptic_k(2 + m)", "elliptic_k(a + m)", "Abs(m)", "acot(m)", "asin(1 + m)",
-              "LambertW(m - exp(-1))", "acosh(1 + m)"],
+              "LambertW(m - exp(-1))", "acosh(1 + m)", "elliptic_pi(2 + m, 1/2)"],
 )  # fmt: skip
 def test_what_is_not_analytic_there_stays_undecided(exact):
     assert told(exact, "m", "a", 1).undecided

@@ -291,3 +291,19 @@ def test_what_a_motion_leaves_open_is_told(given: dict, open_: tuple[str, ...]) 
 def test_another_convention_is_told_where_it_is_one(value: str, other: bool) -> None:
     found = judged({"kind": "poisson-bracket", **PHASE, "pairs": [{"f": "q", "g": "p", "value": value}]})
     assert ("opposite sign convention" in found.reasons[0]) == other
+
+
+@pytest.mark.parametrize("count", [2, 8, 11])
+def test_a_side_with_a_declared_letter_is_no_definition_however_many_stand_before_it(count: int) -> None:
+    """H = Σ P²/2 - L, where L is a parameter and a number of P_1, P_2, … come first."""
+    numbers = range(1, count + 1)
+    right = " + ".join(f"P_{i}**2/2" for i in numbers) + " - L"
+    question = {
+        "kind": "legendre-hamiltonian",
+        "q": [f"x_{i}" for i in numbers],
+        "p": [f"P_{i}" for i in numbers],
+        "parameters": {"L": "real"},
+        "L": " + ".join(f"x_{i}_dot**2/2" for i in numbers) + " + L",
+    }
+    assert judged({**question, "H": f"H = {right} = {right}"}).status == "holds"
+    assert judged({**question, "H": f"H = P_1**2 + {right} = {right}"}).status == "fails"

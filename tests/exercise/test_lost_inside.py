@@ -4,8 +4,11 @@ import pytest
 import sympy as sp
 
 from canon.exercise.diagnose.effort import Effort
+from canon.exercise.diagnose.repairs.component_screen import PRECISION, Screen
+from canon.exercise.diagnose.repairs.lost_factor import Monomials
 from canon.exercise.diagnose.repairs.repair import repair
 from canon.exercise.question.question import Part
+from canon.proof.domain.balls import precision
 from canon.proof.domain.domain import Domain
 from canon.proof.vanish import vanishes
 
@@ -20,6 +23,7 @@ LOST = [
     (x / (g * (k * x**2 + l)), x / (g * (k * x**2 + l - m * y)), "TERM_MISSING_IN", -m * y),
     (x + y * g / l, x + y * g / sp.sqrt(l**2 + x**2), "SYMBOL", sp.sqrt(l**2 + x**2)),
     (x**2 / 2 + m * x * y / 2 + y**2 / 2, m * (x**2 + x * y + y**2) / 2, "FACTOR_MISSING", m),
+    (x**2 + y + k * theta, (x**2 + y) / k**2 + k * theta, "FACTOR_MISSING", k**-2),
     (x**2 + m * g * x * y + 3 * y, m * g * (x**2 + x * y + 3 * y), "FACTOR_MISSING", g * m),
     (x**2 + y / (k + l) - theta, (x**2 + y - theta) / (k + l), "FACTOR_MISSING", 1 / (k + l)),
     (
@@ -44,3 +48,12 @@ def test_what_is_lost_is_named(claimed, right, mistake, lost):
 def test_nothing_is_lost_in_what_is_wrong_altogether(right):
     found = repair(Part("a", sp.exp(x) * y, right), Domain(), Effort(60.0))
     assert found is None or vanishes(found.right - right).holds
+
+
+def test_a_lost_term_is_first_told_in_the_functions_of_the_answer() -> None:
+    own, other = sp.log(l / k), sp.log(k / l)
+    part = Part("a", x + own, x + own + m * other)
+    screen = Screen(part, Domain())
+    with precision(PRECISION):
+        found = list(Monomials(part, screen.first, screen.memo).of_residual())
+    assert found[:2] == [m * own, -m * other]

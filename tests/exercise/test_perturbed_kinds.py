@@ -9,6 +9,7 @@ from sympy import symbols
 from canon.exercise.claim_verdict import examine
 from canon.exercise.judges.perturbed import tori
 from canon.exercise.question.deadline import Deadline, Worked
+from canon.exercise.sheet.reading import InvalidClaim
 from canon.exercise.sheet.sheet import Claim, read_sheet
 from canon.exercise.sheet_check import judged
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
@@ -94,6 +95,31 @@ def test_an_energy_that_is_told_beside_s_is_judged_too(told, holds):
     verdict = examine(Claim("a", "hamilton-jacobi", {**keys, "S": "sqrt(2*E)*q - E*t"})).verdict
     assert verdict.holds is holds
     assert verdict.fails is not holds
+
+
+PUSHED = {"q": ["q"], "p": ["p"], "H": "p**2/2 - q*t", "constants": ["a"]}
+"""A mass under a force that grows with the time: p = a + t²/2, and −∂S/∂t = p²/2 − q t."""
+
+
+def test_a_hamiltonian_that_holds_the_time_has_a_complete_integral_but_no_energy() -> None:
+    S = "q*(a + t**2/2) - a**2*t/2 - a*t**3/6 - t**5/40"
+    assert examine(Claim("a", "hamilton-jacobi", {**PUSHED, "S": S})).verdict.holds
+    twin = S.replace("- a*t**3", "+ a*t**3")
+    assert examine(Claim("a", "hamilton-jacobi", {**PUSHED, "S": twin})).verdict.fails
+    with pytest.raises(InvalidClaim, match="key W: H depends on t, so no energy is kept; claim S"):
+        examine(Claim("a", "hamilton-jacobi", {**PUSHED, "W": "q*sqrt(2*a)"}))
+
+
+def test_turns_in_place_of_radians_are_told() -> None:
+    keys = {"q": ["q"], "p": ["p"], "H": "p**2/2 + w**2*q**2/2", "parameters": {"w": "positive"}}
+    turns, other = (
+        examine(Claim("a", "frequency", {**keys, "omega": [omega]})).verdict
+        for omega in ("w/(2*pi)", "w/(3*pi)")
+    )
+    assert turns.fails
+    assert turns.feedback == "this counts turns; the frequency of q is 2π times that"
+    assert other.fails
+    assert other.feedback == ""
 
 
 @pytest.mark.parametrize(

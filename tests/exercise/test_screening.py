@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from canon.exercise.claim_verdict import examine
-from canon.exercise.diagnose.diagnosis import judged_to_hold
+from canon.exercise.diagnose.derived_part import time_term
+from canon.exercise.diagnose.diagnosis import WrongAnswer, judged_to_hold
 from canon.exercise.diagnose.diagnosis_search import diagnosis
 from canon.exercise.diagnose.effort import Effort
 from canon.exercise.diagnose.repairs.answer_places import answers_of
@@ -133,6 +134,40 @@ def test_a_lost_time_term_and_a_constant_that_needs_none():
     keys["H"], keys["parameters"] = "p**2/2 - k*x", {"k": "positive"}
     assert told("constant-of-motion", **keys, I="p") == said
     assert told("constant-of-motion", **keys, I="p - k*t") == "holds"
+
+
+def test_a_term_without_its_time_is_put_right():
+    keys = {"q": ["x"], "p": ["p"], "H": "p**2/(2*m)", "parameters": {"m": "positive"}}
+    finding = examine(Claim("a", "constant-of-motion", {**keys, "I": "x - p/m"}))
+    (found,) = time_term(WrongAnswer(finding, (), finding.reading.domain, Effort(60.0)))
+    assert sentence(found) == "in I the term -p/m lacks the factor t"
+    assert judged_to_hold(found.repaired, Effort(60.0))
+
+
+@pytest.mark.parametrize(
+    ("x", "passes"), [("2*cos(t)", True), ("cos(t)", False), ("2*cos(t) + sin(t)", False)]
+)
+def test_a_motion_that_begins_elsewhere_does_not_pass(x, passes):
+    keys = {"q": ["x"], "L": "x_dot**2/2 - x**2/2", "initial": {"x": "2", "x_dot": "0"}, "solution": {"x": x}}
+    reading = Reading(Claim("a", "solution", keys))
+    assert screening(reading, dict(answers_of(reading))).passes({}) is passes
+
+
+def test_the_part_of_the_domain_where_a_branch_is_right_is_told():
+    keys = {
+        "parameters": {"x": "real"},
+        "domain": ["0 < x", "x < pi"],
+        "lhs": "asin(sin(x))",
+        "rhs": "pi - x",
+    }
+    said = "right where x - pi/2 > 0, but not on the whole domain"
+    assert told("equality-only", **keys) == said
+    assert told("equality-only", **{**keys, "domain": ["pi/2 < x", "x < pi"]}) == "holds"
+
+
+def test_a_parameter_that_was_taken_to_be_one_is_told():
+    keys = {"q": ["q"], "p": ["p"], "parameters": {"a": "positive"}, "P": ["p"]}
+    assert told("canonicity", **keys, Q=["q**a"]) == "right for a = 1, but not in general"
 
 
 def test_right_only_for_small_angles_is_said_of_truncated_answers_only():

@@ -67,6 +67,9 @@ BEAD = {"kind": "multiplier-holonomic", "q": ["r", "theta"], "parameters": {"m":
 PENDULUM = {"kind": "euler-lagrange", "q": ["theta"], "parameters": {"m": "positive", "g": "positive", "l": "positive"},
             "L": "m*l**2*theta_dot**2/2 + m*g*l*cos(theta)"}  # fmt: skip
 
+HOOP = {"kind": "legendre-hamiltonian", "q": ["theta"], "p": ["p"], "parameters": {"m": "positive", "g": "positive"},
+        "L": "m*theta_dot**2*(1 + cos(theta)**2)/2 + m*g*cos(theta)"}  # fmt: skip
+
 
 @pytest.mark.parametrize(
     ("question", "answer", "said"),
@@ -85,6 +88,11 @@ PENDULUM = {"kind": "euler-lagrange", "q": ["theta"], "parameters": {"m": "posit
         (PENDULUM, {"claim": ["theta_ddot + l/g*sin(theta)"]}, "is upside down"),
         (PENDULUM, {"claim": ["l*theta_ddot + m*g*sin(theta)"]}, "in equation 1"),
         (PENDULUM, {"claim": ["theta_dot + g/l*sin(theta)"]}, "theta_dot should be theta_ddot"),
+        (
+            HOOP,
+            {"H": "p**2/(2*m*(1 + sin(theta)**2)) - m*g*sin(theta)"},
+            "in H sin(theta) should be cos(theta) everywhere",
+        ),
     ],
 )
 def test_a_mistake_is_named_as_a_teacher_would(question, answer, said):

@@ -159,6 +159,41 @@ def test_the_work_of_reading_is_counted_where_it_ends_and_where_it_does_not(monk
     assert [process.usable for process in started] == [False, False]
 
 
+def test_a_process_that_ended_or_has_read_enough_is_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
+    started: list[Reading] = []
+
+    class Reading:
+        """A process that says how many texts it was asked before, and can be killed by others."""
+
+        def __init__(self, *_: object, **__: object) -> None:
+            started.append(self)
+            self.usable, self.asked = True, -1
+
+        def send(self, encode: object, seconds: float) -> None:
+            assert self.usable
+
+        def receive(self, deadline: float) -> bytes:
+            self.asked += 1
+            return b'{"before": %d}' % (self.asked - 1)
+
+        def kill(self) -> None:
+            self.usable = False
+
+    async def asked() -> list[int]:
+        reader, found = text_reader.TextReader(), []
+        for number in range(7):
+            if number == 5:
+                started[-1].usable = False
+            found.append((await reader.how_read({"text": "x"}, WorkTime()))["before"])
+        reader.close()
+        return found
+
+    monkeypatch.setattr(text_reader, "Child", Reading)
+    monkeypatch.setattr(text_reader, "TEXTS_A_PROCESS", 3)
+    assert asyncio.run(asked()) == [0, 1, 2, 0, 1, 0, 1]
+    assert len(started) == 3
+
+
 @pytest.mark.parametrize(
     ("one", "other", "same"),
     [("::ffff:192.0.2.1", "192.0.2.1", True), ("::ffff:192.0.2.1", "::ffff:192.0.2.2", False),

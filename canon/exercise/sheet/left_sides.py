@@ -287,8 +287,8 @@ def is_definition(said: str, key: str, scope: Scope) -> bool:
     (True, False)
     """
     said = said.replace("−", "-")
-    names = re.findall(r"[A-Z]", said)
-    if not names or any(scope.declares(name) for name in names[:9]):
+    names = set(re.findall(r"[A-Z]", said))
+    if not names or any(scope.declares(name) for name in names):
         return False
     if re.fullmatch(_OF_ANY, said):
         return not any(name in scope.functions for name in names)
