@@ -35,8 +35,10 @@ from canon.study.cases.run_study import run_study
 from canon.study.cases.store import Store
 from canon.study.cases.study import Study
 from canon.study.energy_drift.drift_study import drift_study
-from canon.study.method_choice.choose import choose
+from canon.study.method_choice.candidate import Candidate
+from canon.study.method_choice.choose import Choice, choose
 from canon.study.method_choice.resonance import resonant_steps
+from canon.study.method_choice.slow_times import Outlook
 from canon.study.method_choice.work_precision import WorkPrecision, WorkRow, work_precision
 
 
@@ -161,6 +163,18 @@ def test_the_chosen_point_lies_where_it_was_predicted():
     assert star.get_label().startswith(f"chosen: {chosen.method}")
     with pytest.raises(ValueError, match="keeps the error of the energy"):
         plot_work_precision(found, error="position", chosen=chosen)
+
+
+@pytest.mark.parametrize(
+    ("method", "step", "told"),
+    [(RK4(), 0.05, f"chosen: {RK4()}, h = 0.05"), (Taylor(), None, f"chosen: {Taylor()}")],
+)
+def test_the_star_tells_the_step_that_was_chosen(method: RK4 | Taylor, step: float | None, told: str) -> None:
+    best = Candidate(method, step, None, "double", 1e-9, 0.5, 400.0, keeps=True, seen=10.0)
+    chosen = Choice("", 10.0, 1e-8, "energy", best, (best,), None, Outlook(10.0))
+    axes = plot_work_precision(WorkPrecision("", 10.0, ()), error="energy", chosen=chosen)
+    (star,) = (line for line in axes.lines if line.get_marker() == "*")
+    assert star.get_label() == told
 
 
 def test_the_fan_holds_the_orbits():

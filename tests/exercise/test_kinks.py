@@ -387,3 +387,16 @@ def test_a_relativistic_lagrangian_is_meant_below_the_speed_of_light(H, holds):
     verdict = examine(Claim("a", "legendre-hamiltonian", {**keys, "parameters": parameters})).verdict
     assert verdict.holds == holds
     assert verdict.fails != holds
+
+
+def test_a_kink_inside_moves_the_kink_outside_to_either_side_of_a_jump() -> None:
+    assert set(off_kinks([abs(x + sp.sign(y))], Domain()).domain.conditions) == {
+        sp.Ne(y, 0),
+        sp.Ne(x + 1, 0),
+        sp.Ne(x - 1, 0),
+    }
+    assert set(off_kinks([abs(x - sp.Heaviside(y))], Domain()).domain.conditions) == {
+        sp.Ne(y, 0),
+        sp.Ne(x, 0),
+        sp.Ne(x - 1, 0),
+    }

@@ -1,5 +1,7 @@
 """Where a contact is lost, said by an angle, a square, a modulus or an inverse function: the same places or not."""
 
+import math
+
 import pytest
 import sympy as sp
 
@@ -129,3 +131,11 @@ def test_half_angles_come_back_after_whole_turns():
     ]
     assert len({sp.N(value) for value in values}) == 6
     assert all(abs(sp.N(sp.sin(value) + 2 * sp.cos(value) - 1)) < 1e-12 for value in values)
+
+
+def test_an_even_power_of_the_sine_is_one_of_the_cosine() -> None:
+    """cos² x − 3 cos x − 2 = 0 gives (3 − √17)/2; of half the angle the tangent solves t⁴ − 3t² − 2 = 0."""
+    found = real_solutions(sp.sin(x) ** 2 + 3 * sp.cos(x) + 1, x, Domain((x > 0, x < 2 * sp.pi)))
+    angle = math.acos((3 - math.sqrt(17)) / 2)
+    values = sorted(float(root.value) for root in found if root.value.is_real)
+    assert values == pytest.approx([angle, 2 * math.pi - angle], abs=1e-12)

@@ -79,6 +79,7 @@ def test_factors_side_by_side(text, meant):
         ("x^1/2", 3, "only 1 raised"),
         ("e^-kt", 5, "belong to the exponent"),
         ("√2x", 1, "how far does the root reach"),
+        ("l d/dt", 3, "what does d/dt reach"),
         ("|a|x|a|", 5, "does this bar open or close"),
         ("V m", 1, "V is a function"),
         ("h(x + 1)", 1, "not a function"),

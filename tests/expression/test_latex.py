@@ -502,6 +502,7 @@ FAULTS = [
     (r"$\frac{d}{dt}", 2, "derivative of what"),
     (r"$\frac{d^2V}{dx}", 2, "neither a quotient"),
     (r"$\frac{x}{dx}", 2, "neither a quotient"),
+    (r"$\frac{\partial\theta}{dt}", 2, "neither a quotient"),
     (r"$\frac{dm}{dx}", 9, "symbol of its own"),
     (r"$\frac{\partial m}{\partial t}", 17, "symbol of its own"),
     (r"$\partial x", 2, "not complete"),

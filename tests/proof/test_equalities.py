@@ -10,6 +10,7 @@ from sympy import Abs, Eq, Ne, Rational, cos, exp, sin, sqrt, symbols
 
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.rational_points import rational_solution
+from canon.proof.refute.root_branches import search_branches
 from canon.proof.tower.ideal import Ideal
 from canon.proof.vanish import equal, vanishes
 
@@ -130,3 +131,10 @@ def test_ideals():
         assert ideal.holds(inside)
         assert not ideal.holds(inside + 1)
     assert not Ideal.of([p * q - 1, q**2 - p]).holds(p**2 - 1)
+
+
+def test_a_root_that_is_not_real_refutes_nothing() -> None:
+    """a² + iab = 1 of real numbers says a² = 1 and ab = 0; (−ib + √(4 − b²))/2 is no value of the real a."""
+    domains = Domain((Eq(a**2 + sp.I * a * b, 1),)), Domain((Eq(a**2 + a * b, 1),))
+    found = [search_branches(b, sp.Integer(0), domain, time.monotonic() + 10) for domain in domains]
+    assert [search.counterexample is None for search in found] == [True, False]

@@ -1,8 +1,11 @@
 """Large whole exponents."""
 
-import pytest
-from sympy import Abs, I, Rational, cos, cosh, diff, exp, sin, sinh, sqrt, symbols, tan
+import math
 
+import pytest
+from sympy import Abs, E, I, Pow, Rational, cos, cosh, diff, exp, sin, sinh, sqrt, symbols, tan
+
+from canon.expression.symbols.magnitude import digits, has_huge_number
 from canon.proof import Domain, equal
 
 x, y = symbols("x y", real=True)
@@ -58,3 +61,11 @@ def test_the_sign_of_a_large_power_follows_its_parity():
     assert equal(sqrt((x + y) ** 1002), (x + y) ** 501).fails
     assert equal(sqrt((x + y + 1) ** 2002), Abs(x + y + 1) ** 1001).holds
     assert equal((x - y) ** 3001, -((y - x) ** 3001)).holds
+
+
+@pytest.mark.parametrize("exponent", [1000, 10**6])
+def test_a_power_of_e_is_as_long_as_the_exponential_function(exponent: int) -> None:
+    power = Pow(E, exponent, evaluate=False)
+    assert power.func is Pow
+    assert digits(power) == pytest.approx(exponent * math.log10(math.e), rel=1e-12)
+    assert has_huge_number(x + power) is (exponent > 10**5)

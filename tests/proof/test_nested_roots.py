@@ -40,3 +40,11 @@ def test_other_roots_of_sums_with_moduli_are_left_as_they_are(root):
     assert equal(root**2 - root.base, 0).holds
     assert not equal(root * sqrt(4 * root.base), 2 * root.base + 1).holds
     assert equal(root * sqrt(4 * root.base), 2 * root.base).holds
+
+
+def test_roots_in_roots_four_deep_cancel() -> None:
+    left, right, wrong = sqrt(a + b + 2 * sqrt(a * b)), sqrt(a) + sqrt(b), sqrt(a) - sqrt(b)
+    for _ in range(3):
+        left, right, wrong = (sqrt(1 + f) for f in (left, right, wrong))
+    assert equal(left, right).holds
+    assert not equal(left, wrong).holds

@@ -5,6 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from canon.proof.trees.polynomial import polynomial_factors
+from canon.proof.trees.polynomial_roots import Root, polynomial_in, real_roots
 
 x, y, z = sp.symbols("x y z")
 IRREDUCIBLE = [x, y, x + y, x**2 + 1, x * y - 2, x + z**2, sp.sin(x) + y, sp.cos(z) - 3]
@@ -37,3 +38,9 @@ def test_what_cancels_when_it_is_expanded_stays_whole():
     nothing = sp.exp(x) * sp.exp(y) - sp.exp(x + y)
     assert polynomial_factors(nothing) == [(nothing, 1)]
     assert dict(polynomial_factors(sp.exp(x) * sp.exp(y) + sp.exp(x + y) + 1))
+
+
+def test_what_does_not_depend_on_the_unknown_has_no_roots_in_it() -> None:
+    for constant in (y + 1, sp.Integer(3), sp.S.Zero, sp.sqrt(x)):
+        assert polynomial_in(constant, x) is None
+    assert real_roots(polynomial_in(x * y + 1, x)) == [Root(-1 / y)]

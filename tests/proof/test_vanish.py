@@ -64,3 +64,11 @@ def test_matrices_entry_by_entry():
     assert equal(turn * turn, sp.eye(2)).fails
     with pytest.raises(ValueError, match="shapes"):
         equal(turn, sp.eye(3))
+
+
+def test_a_sum_of_squares_is_found_whichever_symbol_completes_the_square() -> None:
+    """The squares of x and z have factors that may be zero; that of y has 1."""
+    z = sp.Symbol("z", real=True)
+    one_more = sp.expand((y + z * x) ** 2 + 1)
+    assert equal(Abs(x) * Abs(one_more), Abs(x) * one_more).holds
+    assert equal(Abs(x) * Abs(one_more - 2), Abs(x) * (one_more - 2)).fails

@@ -62,6 +62,18 @@ def test_what_is_written_as_a_sum_of_zeros_is_zero(lot):
     assert lack_of_value(whole, EVERYWHERE, time.monotonic() + 10).proved
 
 
+def test_pieces_of_which_none_has_a_value_have_none_together() -> None:
+    x = sp.Symbol("x", real=True)
+    nowhere = 1 / ((x + 1) ** 2 - x**2 - 2 * x - 1)
+    lack = lack_of_value(
+        sp.Piecewise((nowhere, x > 0), (2 * nowhere, True)), EVERYWHERE, time.monotonic() + 10
+    )
+    assert lack.proved
+    assert lack.sentence("f") == "f has a value nowhere: none of its pieces has one"
+    half = sp.Piecewise((nowhere, x > 0), (x, True))
+    assert lack_of_value(half, EVERYWHERE, time.monotonic() + 10) is None
+
+
 @pytest.mark.parametrize("lot", range(12))
 def test_an_answer_without_a_value_on_the_motion_never_holds(lot):
     """It has one elsewhere, but the claim is about motions with x = 0 only."""

@@ -264,6 +264,15 @@ def test_the_working_precision_is_as_it_was():
     assert ctx.prec == before
 
 
+def test_a_start_in_the_order_of_the_coordinates_is_a_start_by_name() -> None:
+    in_order, by_name = (
+        action_variables(OSCILLATOR, start, {m: 2, w: 3}, digits=5) for start in ([1, 5], {"p": 5, "q": 1})
+    )
+    for torus in (in_order, by_name):
+        assert torus.J[0].overlaps(arb(61) / 12)  # (5²/4 + 9)/3
+    assert not action_variables(OSCILLATOR, [5, 1], {m: 2, w: 3}, digits=5).J[0].overlaps(arb(61) / 12)
+
+
 def test_a_start_is_given_as_to_propagate():
     oscillator = hamilton_jacobi(Hamiltonian(p**2 / 2 + k * q**2 / 2, q, p))
     ways = ({q: 1, p: 2}, {"q": 1, "p": 2}, [1, 2], (1.0, 2), np.array([1.0, 2.0]))

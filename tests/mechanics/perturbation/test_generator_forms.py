@@ -52,3 +52,12 @@ def test_the_three_forms_differ_beyond_their_first_parts():
     assert product[3] == hori[3] == deprit[3]
     assert hori[5] != product[5]
     assert deprit[4] == hori[4].times(2)
+
+
+def test_parts_of_the_fifth_degree_take_account_of_how_those_below_act_on_each_other() -> None:
+    H = Hamiltonian((px**2 + x**2) / 2 + x**3, x, px)
+    form = birkhoff_normal_form(H, 5)
+    parts = hori_generator(form)
+    found = lie_series(H.H, form.expression(parts), H.q, H.p, 3)
+    assert degrees(found, 5) == degrees(form.in_variables(), 5)
+    assert 5 in parts
