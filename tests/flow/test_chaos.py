@@ -121,6 +121,14 @@ def test_many_deviations_beside_a_torus_are_not_called_chaotic():
     assert found.verdict is Regularity.NOT_KNOWN
 
 
+def test_an_exponential_is_told_from_a_power_with_as_many_deviations_as_there_are() -> None:
+    """GALI_6 of three saddles of rates 1, 2 and 3 comes to fall as exp(−18 t)."""
+    q = coordinates("q1 q2 q3")
+    saddles = hamiltonian(-sum((k + 1) ** 2 * a**2 for k, a in enumerate(q)) / 2, *q)
+    found = gali(saddles, (0, 4), [1e-9] * 6, vectors=6, method="kahan-li-8", step=0.01, samples=200)
+    assert found.verdict is Regularity.CHAOTIC
+
+
 KINK = Hamiltonian(
     (x.momentum**2 + y.momentum**2) / 2 + sp.Abs(x - y / 3) + y**2 / 2 + sp.Abs(y + sp.Rational(1, 5)) / 2,
     [x, y],

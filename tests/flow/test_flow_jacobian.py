@@ -181,6 +181,12 @@ def test_neighbours_that_part_beyond_all_doubles_are_no_collision(options):
         _ = found.symplecticity_defect
 
 
+def test_the_whole_motion_in_one_sample_is_cut_for_its_variations() -> None:
+    saddle = Hamiltonian(x.momentum**2 / 2 - x**2 / 2, [x], [x.momentum])
+    found = flow_jacobian(saddle, (0, 2000), [0.0, 0.0], samples=1)
+    np.testing.assert_allclose(found.log_size[1] + np.log(2), 2000, rtol=1e-12)
+
+
 def test_so_do_those_of_other_systems():
     held = Lagrangian((x.dot**2 + x**2) / 2, [x], forces=[-x.dot / 10])
     found = flow_jacobian(held, (0, 1000), [0.0, 0.0], samples=2)

@@ -69,8 +69,9 @@ def order_seen(system, start, method, steps, span=3):
 
 
 @pytest.mark.parametrize("method", [LOBATTO, pytest.param(MORE, marks=pytest.mark.slow)], ids=str)
-def test_halving_the_step_divides_the_error_by_two_to_the_order(method):
-    assert order_seen(DAMPED, START, method, 40) == pytest.approx(method.order, abs=0.05 * method.order)
+@pytest.mark.parametrize(("system", "start"), [(DAMPED, START), (DRIVEN, [1, 0.3])], ids=["damped", "driven"])
+def test_halving_the_step_divides_the_error_by_two_to_the_order(system, start, method):
+    assert order_seen(system, start, method, 40) == pytest.approx(method.order, abs=0.05 * method.order)
 
 
 @pytest.mark.slow

@@ -115,6 +115,24 @@ def test_step_in_the_potential_refracts_by_snell(method, bound):
     assert "reflected" in str(slow.events[0].event)
 
 
+def test_samples_on_either_side_of_a_step_are_of_the_motion_on_their_side() -> None:
+    motion = propagate(one(sp.Heaviside(x - 1) / 4), (0, 2), [0, 1], samples=331)
+    slow = math.sqrt(0.5)
+    np.testing.assert_allclose(motion.p[0], np.where(motion.t < 1, 1, slow), atol=1e-14)
+    np.testing.assert_allclose(
+        motion["x"], np.where(motion.t < 1, motion.t, 1 + slow * (motion.t - 1)), atol=1e-14
+    )
+
+
+@pytest.mark.parametrize("samples", [64, 100, 200, 1000])
+@pytest.mark.parametrize("way", [1, -1])
+def test_a_sample_at_the_instant_of_a_step_has_the_energy_of_the_motion(samples: int, way: int) -> None:
+    """However the samples are: at x = 1 itself H has half of the step."""
+    motion = propagate(one(sp.Heaviside(x - 1) / 4), (0, 2 * way), [0, way], samples=samples)
+    assert abs(motion.energy_error).max() < 1e-15
+    assert motion.p[0, samples // 2] == pytest.approx(way * math.sqrt(0.5), abs=1e-14)
+
+
 def test_moving_step_refracts_in_its_own_frame():
     speed = sp.Rational(1, 10)
     motion = propagate(one(sp.Heaviside(x - speed * t) / 4), (0, 3), [-1, 1])

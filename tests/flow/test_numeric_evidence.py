@@ -191,6 +191,16 @@ def test_a_chaotic_motion_keeps_its_energy():
     assert seen.speaks == "for", seen.text
 
 
+@pytest.mark.parametrize("size", [sp.Integer(10) ** -40, sp.Integer(10) ** 40])
+def test_how_large_a_claimed_integral_is_changes_nothing(size: sp.Expr) -> None:
+    for claimed, speaks in ((PENDULUM.H, "for"), (PENDULUM.H + q / 100, "against")):
+        plain, scaled = (
+            integral_along_motion(factor * claimed, PENDULUM, (0, 5), [1, 0]) for factor in (1, size)
+        )
+        assert (plain.speaks, scaled.speaks) == (speaks, speaks)
+        assert scaled.roundoff == pytest.approx(float(size) * plain.roundoff, rel=1e-6)
+
+
 def test_units_may_be_far_from_one():
     """The Earth about the Sun in kilograms, metres and seconds."""
     parameters = {m: "5.97e24", k: "7.92e44"}

@@ -134,6 +134,15 @@ def test_what_is_no_periodic_orbit_is_told() -> None:
         periodic_orbit(PENDULUM, [1.0, 0.0], 6.5, energy=0.1, fixed_period=True)
 
 
+@pytest.mark.parametrize(("step", "goal"), [(0.2, -0.8), (-0.1, -0.95)])
+def test_a_family_ends_with_the_first_orbit_beyond_its_energy(step: float, goal: float) -> None:
+    first = periodic_orbit(PENDULUM, [0.5, 0.0], 6.4, reversal=["p_x"])
+    family = continue_family(first, 40, step, to_energy=goal)
+    *short, last = (np.sign(step) * (energy - goal) for energy in family.energies)
+    assert max(short) < 0 <= last
+    assert family.ended == f"the energy {goal:g} is reached"
+
+
 @pytest.mark.slow
 def test_a_family_passes_its_bifurcation() -> None:
     # On the axis x = 0 of Hénon and Heiles, y¨ = −y + y²: the orbit that passes between the saddle's sides.

@@ -7,8 +7,18 @@ import pytest
 import sympy as sp
 
 from canon import SABA, Hamiltonian, Taylor, WisdomHolman, coordinates, propagate
-from canon.flow import Regularity, gali, largest_lyapunov_exponent, lyapunov_spectrum, megno, sali
+from canon.flow import (
+    Regularity,
+    fast_lyapunov_indicator,
+    gali,
+    largest_lyapunov_exponent,
+    lyapunov_spectrum,
+    megno,
+    sali,
+)
 from canon.flow.geometry.flow_jacobian import flow_jacobian
+from canon.flow.request import Request
+from canon.flow.system_request import any_task
 from canon.flow.tangent.deviation_growth import deviation_growth
 from tests.flow.systems import HENON_HEILES, KEPLER, kepler_start
 from tests.flow.test_tangent_maps import task_of
@@ -53,6 +63,19 @@ def test_megno_of_planets_far_apart_is_2_and_grows_where_resonances_overlap():
     assert list(found.verdict) == [Regularity.REGULAR, Regularity.CHAOTIC]
     assert found.value[0] == pytest.approx(2, abs=0.05)
     assert found.value[1] > 50
+
+
+def test_a_deviation_along_the_orbit_of_light_planets_shows_nothing() -> None:
+    """It is given as one of (q, p); heavy and light bodies are weighed for its length."""
+    system = any_task(Request(PLANETS, (0, 1), REGULAR, method=WisdomHolman(), step=0.1))[0].system
+    rates = system.graph.evaluate(system.rates, dict(zip(system.inputs, (*REGULAR, 0.0), strict=True)))
+    how = {"method": WisdomHolman(), "step": 0.05, "samples": 200}
+    along, across = (
+        fast_lyapunov_indicator(PLANETS, (0, 20 * PERIOD), REGULAR, deviation=each, **how).value
+        for each in (rates, rates[::-1])
+    )
+    assert along < 0.1
+    assert across > 2
 
 
 @pytest.mark.slow

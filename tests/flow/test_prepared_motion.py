@@ -209,6 +209,11 @@ def test_a_prepared_motion_reads_its_request_once(monkeypatch):
     assert prepared.propagate([1.0, 0.0]).steps == 20
 
 
+def test_a_prepared_motion_shows_its_request_and_nothing_made_of_it() -> None:
+    prepared = prepare("kepler", (0, 10), samples=2)
+    assert repr(prepared) == f"PreparedMotion(request={prepared.request})"
+
+
 def test_a_motion_that_was_prepared_goes_on():
     by = {"parameters": {G: 1.0}, "method": "verlet", "step": 0.125, "samples": 4}
     half = prepare(PENDULUM, (0, 2), **by).propagate([1.0, 0.0])

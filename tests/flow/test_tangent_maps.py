@@ -252,6 +252,26 @@ def test_a_runge_kutta_method_carries_deviations_too():
     np.testing.assert_allclose(going.states()[:, 0], known.y[:, -1], atol=1e-11)
 
 
+def test_taylors_method_carries_deviations_too() -> None:
+    task = task_of(PENDULUM, [1.0, 0.3], Taylor(), None, samples=32)
+    going = VariationalDeviations(task, np.eye(2), orthogonal=False)
+    log = sum(going.advance() for _ in task.plan.instants[1:])
+    M = going.vectors()[:, :, 0] * np.exp(log[:, 0])
+    known = flow_jacobian(PENDULUM, (0, 2), [1.0, 0.3], method=Taylor())
+    np.testing.assert_allclose(M, known.final, atol=1e-13)
+    np.testing.assert_allclose(going.states()[:, 0], known.y[:, -1], atol=1e-13)
+
+
+def test_deviations_that_grow_slowly_are_renormalised_ever_more_rarely() -> None:
+    x = coordinates("x")
+    spring = Hamiltonian((x.momentum**2 + x**2) / 2, [x], [x.momentum])
+    task = task_of(spring, [1.0, 0.0], Splitting("verlet"), 0.01, span=400.0)
+    going = CompiledDeviations(task, np.eye(2), orthogonal=True)
+    stretches = [(going.advance(), going.every)[1] for _ in range(8)]
+    assert stretches == sorted(set(stretches))
+    assert going.vectors()[:, :, 0].T @ going.vectors()[:, :, 0] == pytest.approx(np.eye(2), abs=1e-14)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("system", "y0", "method", "step"), ENGINES.values(), ids=ENGINES)
 def test_other_engines_carry_deviations_too(system, y0, method, step):

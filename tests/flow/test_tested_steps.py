@@ -14,12 +14,13 @@ from typing import Any
 import numpy as np
 import pytest
 import sympy as sp
+from heyoka import taylor_outcome
 
 from canon import Event, Hamiltonian, Lagrangian, coordinates, propagate
 from canon import time as t
 from canon.expression.graph.graph import Graph
 from canon.flow import NonFiniteStateError
-from canon.flow.adaptive import taylor_orbit
+from canon.flow.adaptive import taylor_orbit, tested_steps
 from canon.flow.adaptive.tested_steps import good_steps
 from canon.flow.checked_request import hamilton_equations_of
 from canon.kernel.heyoka_bridge import taylor_integrator
@@ -70,6 +71,17 @@ def test_a_step_too_long_is_found_and_no_other() -> None:
     good, missed = good_steps(piece, made)
     assert good == 0
     assert missed > 1e6
+
+
+@pytest.mark.parametrize("most", [200, 10_000])
+def test_good_steps_go_on_to_the_end_or_as_many_as_are_wanted(most: int) -> None:
+    spring = Hamiltonian((x.momentum**2 + x**2) / 2, [x], [x.momentum])
+    made = taylor_integrator(hamilton_equations_of(spring, {}), [Fraction(1), Fraction(0)], Fraction(0), None)
+    tested = tested_steps.TestedSteps(made, lambda: made, [], None)
+    ended = tested.towards(2000.0, most)
+    assert ended == (taylor_outcome.step_limit if most == 200 else taylor_outcome.time_limit)
+    assert (tested.steps == most) == (most == 200)
+    np.testing.assert_allclose(made.state, [np.cos(made.time), -np.sin(made.time)], atol=1e-12)
 
 
 @pytest.mark.parametrize(("start", "is_good"), [(1000.0, True), (100.0, False), (-1000.0, True)])

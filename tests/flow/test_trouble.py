@@ -2,17 +2,19 @@
 
 import math
 import warnings
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import sympy as sp
 
 from canon import Hamiltonian
+from canon.flow.checked_request import hamilton_equations_of
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor
 from canon.flow.propagation import propagate
 from canon.flow.run.event import Event
 from canon.flow.run.non_finite_state import NonFiniteStateError
-from canon.flow.run.observables_along import AccuracyWarning
+from canon.flow.run.observables_along import AccuracyWarning, size_of_terms
 from canon.kernel.schemes.gauss_tableau import gauss_tableau
 from tests.flow.systems import KEPLER, PENDULUM, System, kepler_start, x, y
 
@@ -46,6 +48,17 @@ def test_a_jump_over_a_collision_is_flagged_where_the_energy_has_changed_by_half
     )
     assert f"(t = {motion.t[first - 1]:.9g} before that)" in str(flag.message)
     assert flag.filename == __file__  # the line that asked for the motion
+
+
+def test_the_terms_of_each_orbit_have_the_size_that_they_have_alone() -> None:
+    """Released from the horizontal, where they vanish, beside one that begins at the bottom and slows down."""
+    system = hamilton_equations_of(PENDULUM, {})
+    motion = propagate(PENDULUM, (0, 2), [[np.pi / 2, 0.0], [0.0, 2.0]], samples=20)
+    alone = [size_of_terms(system, SimpleNamespace(t=motion.t, y=motion.y[:, :, [k]])) for k in range(2)]
+    together = size_of_terms(system, motion)
+    np.testing.assert_array_equal(together, np.concatenate(alone))
+    assert together[1] == 3
+    assert 0.1 < together[0] < 2
 
 
 def test_a_motion_that_ends_before_the_collision_is_not_flagged():

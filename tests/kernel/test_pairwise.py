@@ -82,6 +82,11 @@ def test_what_is_no_sum_over_all_pairs_is_left_alone(what: str) -> None:
     assert pair_forces(system_of(not_found()[what], flat(plane()))) is None
 
 
+def test_few_bodies_are_written_out() -> None:
+    found = [pair_forces(system_of(attraction(plane(n)), flat(plane(n)))) for n in (5, BODIES)]
+    assert [each is None for each in found] == [True, False]
+
+
 @pytest.mark.parametrize("precision", ["double", "compensated", "double-double", "extended", "single"])
 @pytest.mark.parametrize("scheme", ["verlet", "srkn-6b"])
 def test_loops_give_the_written_out_motion(

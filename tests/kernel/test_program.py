@@ -94,6 +94,15 @@ def test_powers_become_products_and_roots():
     assert lowered(x ** sp.Rational(1, 3)).count("pow") == 1
 
 
+def test_the_negative_of_a_sum_costs_no_more_than_the_sum() -> None:
+    graph = Graph()
+    total = graph.add([graph.symbol(x), graph.symbol(y), graph.negative(graph.symbol(z))])
+    for node, value in ((total, Fraction(7)), (graph.plain_mul([graph.number(-1), total]), Fraction(-7))):
+        steps = program(graph, [node], (x, y, z))
+        assert len(steps.instructions) == 5
+        assert interpret(steps, (Fraction(2), Fraction(6), Fraction(1)), Fraction, {}) == [value]
+
+
 def test_a_shared_reciprocal_is_computed_once_and_a_single_quotient_is_a_division():
     r3 = (x**2 + y**2) ** sp.Rational(3, 2)
     shared = lowered(x / r3, y / r3)

@@ -53,6 +53,17 @@ def test_a_weight_is_drawn_as_high_as_its_energy_says(name, times):
     assert sp.simplify(sum(c**2 for c in mass) - (times * s.l) ** 2) == 0
 
 
+def test_a_link_is_drawn_twice_as_far_as_its_centre_of_mass() -> None:
+    """From joint to joint of the manipulator, whose first link has c₁ = L₁/2 and whose second is drawn with 2 c₂."""
+    scene = find("two-link-manipulator")
+    s = scene.symbols
+    ((shoulder, elbow, hand),) = scene.picture_of(s).bars
+    for body, ends in zip(scene.bodies_of(s), ((shoulder, elbow), (elbow, hand)), strict=True):
+        middle = [(a + b) / 2 for a, b in zip(*ends, strict=True)]
+        apart = [(m - r).subs(s.c1, s.L1 / 2) for m, r in zip(middle, body.r, strict=True)]
+        assert [sp.simplify(each) for each in apart] == [0, 0]
+
+
 EXTENDED = (
     "lagrange-top",
     "kovalevskaya-top",

@@ -9,7 +9,7 @@ import pytest
 import sympy as sp
 from sympy import cos, sin
 
-from canon.expression.symbols.symbol import time_derivative
+from canon.expression.symbols.symbol import time, time_derivative
 from canon.proof.vanish import equal, vanishes
 from canon.scene import SCENES, find
 from canon.scene.known_truths import solutions_met
@@ -188,6 +188,22 @@ def test_the_crank_has_the_known_speed_whatever_acts_on_it(name, changed):
     assert all(each.passed for each in met), str(met)
     idle = scene.solutions[0].value(scene.values, np.zeros(1))
     assert scene.solutions[0].value(scene.values | given, np.zeros(1)) != pytest.approx(idle, rel=1e-4)
+
+
+def test_the_first_order_engine_is_the_whole_one_of_a_short_crank() -> None:
+    """Their I(θ) agree up to r², where the piston's line has no offset."""
+    s = find("piston-engine").symbols
+    whole, first = find("piston-engine").L_of(s).subs(s.e, 0), find("piston-engine-first-order").L_of(s)
+    for order in range(3):
+        assert equal(*(sp.diff(L, s.r, order).subs(s.r, 0) for L in (whole, first))).holds
+
+
+@pytest.mark.parametrize("speed", [100.0, 30.0])
+def test_a_turn_of_the_engine_is_its_time_scale(speed: float) -> None:
+    scene = find("piston-engine-constant-speed").with_parameters(w=speed)
+    (kept,) = scene.holonomic_of(scene.symbols)
+    (angle,) = sp.solve(kept.subs(scene.symbols.w, speed), scene.symbols.theta)
+    assert float(angle.subs(time, scene.period)) == pytest.approx(2 * math.pi, rel=1e-14)
 
 
 def test_what_is_not_known_at_these_values_is_not_asked():

@@ -20,6 +20,7 @@ from canon.study.method_choice.choice_question import Question
 from canon.study.method_choice.error_law import expected_error
 from canon.study.method_choice.pilot_run import Pilot, pilot
 from canon.study.method_choice.tolerance_search import tolerance_at
+from tests.flow.test_tangent_maps import chain
 from tests.study import series
 
 FEW = (Splitting("verlet"), Splitting("kahan-li-8"), Taylor())
@@ -120,6 +121,14 @@ def test_splittings_by_solvable_parts_are_candidates_where_something_disturbs_th
         for method in candidate_methods(Question(scene.hamiltonian, scene.state(), scene.values, 1.0))
     }
     assert names & set(DISTURBED) == (set(DISTURBED) if disturbed else set())
+
+
+def test_matrices_that_cost_no_more_than_the_force_are_candidates() -> None:
+    """The drift of n oscillators takes n² products, the force of a chain as many as there are bonds."""
+    for masses, offered in ((8, set(DISTURBED)), (40, set())):
+        H = chain(masses + 1)
+        question = Question(H, np.full(2 * masses, 0.1), {}, 1.0)
+        assert {str(method) for method in candidate_methods(question)} & set(DISTURBED) == offered
 
 
 def test_planets_are_cheaper_by_their_keplerian_motions():

@@ -16,6 +16,7 @@ from canon.study.energy_drift.drift import Growth
 from canon.study.energy_drift.drift_study import StudyError, drift_study
 from canon.study.energy_drift.drift_table import drift_table, with_error
 
+x = coordinates("x")
 METHODS = (Splitting("kahan-li-8"), Splitting("verlet"), RK4(), Taylor())
 
 
@@ -125,7 +126,6 @@ def test_a_collision_is_a_row_with_the_reason():
 
 
 def test_a_hamiltonian_of_ones_own():
-    x = coordinates("x")
     quartic = Hamiltonian(x.momentum**2 / 2 + x**4 / 4, [x], [x.momentum])
     study = drift_study(quartic, [1.0, 0.0], methods=[Splitting("verlet")], span=2000.0, step=0.05)
     assert study.rows[0].drift.verdict is Growth.BOUNDED
@@ -134,7 +134,6 @@ def test_a_hamiltonian_of_ones_own():
 
 
 def test_requests_that_make_no_sense():
-    x = coordinates("x")
     free = Hamiltonian(x.momentum**2 / 2, [x], [x.momentum])
     with pytest.raises(StudyError, match="does not tell its period"):
         drift_study(free, [0.0, 1.0], methods=[RK4()])
@@ -202,3 +201,14 @@ def test_a_start_given_by_velocities_keeps_them_whatever_the_mass():
     np.testing.assert_array_equal(by_value.rows[0].final, changed.rows[0].final)
     own = drift_study(scene, start, **asked)
     np.testing.assert_allclose(by_value.rows[0].final, own.rows[0].final * [1.0, 3.0], rtol=1e-9)
+
+
+@pytest.mark.parametrize("factor", [1, 1 + x**2], ids=["T + V", "does not split"])
+def test_the_usual_methods_are_of_order_eight_and_two_beside_runge_kutta_and_taylor(factor):
+    oscillator = Hamiltonian((factor * x.momentum**2 + x**2) / 2, [x], [x.momentum])
+    eighth, second, *others = drift_study(oscillator, [1, 0], span=20, period=6, samples=300).rows
+    assert [(row.method.order, row.method.is_symplectic) for row in (eighth, second)] == [
+        (8, True),
+        (2, True),
+    ]
+    assert [row.method for row in others] == [RK4(), Taylor()]

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from canon.study.energy_drift.drift import Growth, drift
+from canon.study.energy_drift.growth import slope_of
 from tests.study import series
 
 TIMES = series.TIMES
@@ -82,6 +83,15 @@ def test_a_widening_oscillation_is_secular_although_its_mean_is_not():
     assert abs(found.slope) < 5.0 * found.slope_error
     assert found.amplitude_slope == pytest.approx(1e-6 / series.SPAN / np.sqrt(2.0), rel=1e-3)
     assert "widens" in found.reason
+
+
+def test_a_mean_that_drifts_and_an_oscillation_that_widens_share_the_false_alarms() -> None:
+    size = 1 + np.interp(series.SHARE, np.linspace(0, 1, 41), np.random.default_rng(3).uniform(-0.5, 0.5, 41))
+    error = 1e-6 * (1 + series.SHARE) * size * np.sin(2.0 * np.pi * 331.7 * series.SHARE)
+    by_chance = slope_of(drift(TIMES, error).blocks.amplitude, 0.01).probability
+    assert 0.01 < by_chance < 0.1
+    found = [drift(TIMES, error, false_alarm=share * by_chance).verdict for share in (1.9, 2.1)]
+    assert found == [Growth.BOUNDED, Growth.SECULAR]
 
 
 @pytest.mark.parametrize("turns", [1.0, 2.0, 3.0])

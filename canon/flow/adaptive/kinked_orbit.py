@@ -100,6 +100,9 @@ class KinkedOrbit:
             left = left[len(found) :]
             if made.outcome is not None or not made.stopped:
                 ended = made.outcome is None and self._passes_at_the_end(own)
+                if self.put_off:
+                    self._put_off(rows, grid, left)
+                    self.put_off = False
                 return Slice(self._rows(rows), steps, seconds, made.outcome, stopped=ended)
             in_a_row = in_a_row + 1 if self._now() == began else 0
             if in_a_row > _PILE:
@@ -126,8 +129,8 @@ class KinkedOrbit:
 
     def _put_off(self, rows: list[Any], grid: list[Any], left: list[Any]) -> list[Any]:
         """Give the samples at this very instant the momenta after it, and return the times that are left."""
-        reach = self._now() + _AT_ONCE * (grid[-1] - grid[0])
-        kept = [t for t in grid[1 : len(rows) + 1] if abs(t - self._now()) > abs(reach - self._now())]
+        near = abs(self._now() - self.at_kink[1]) + abs(_AT_ONCE * (grid[-1] - grid[0]))
+        kept = [t for t in grid[1 : len(rows) + 1] if abs(t - self._now()) > near]
         passed = [t for t in left if (t - self._now()) * self.regimes.taylor_events.forward <= 0]
         rows[len(kept) :] = [self.state.copy() for _ in range(len(rows) - len(kept) + len(passed))]
         return left[len(passed) :]
