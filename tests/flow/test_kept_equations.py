@@ -13,6 +13,7 @@ from canon.flow import DOP853, RK4, Event
 from canon.flow.request import Request
 from canon.flow.system import kept_equations
 from canon.flow.system_request import any_task
+from canon.mechanics import UnilateralLagrangian
 from tests.mechanics.test_articulated import chain
 
 x, y = coordinates("x y")
@@ -56,6 +57,14 @@ def test_a_start_without_accelerations_is_refused_after_a_good_one() -> None:
     equations(root, [1.0, 0.1])
     with pytest.raises(ValueError, match="the mass matrix is not finite at the start"):
         equations(root, [-1.0, 0.1])
+
+
+def test_contacts_are_closed_or_open_as_the_start_says() -> None:
+    """A ball that is thrown up leaves the ground, one that rests stays, whichever was asked for first."""
+    ball = UnilateralLagrangian(Lagrangian(y.dot**2 / 2 - g * y, [y]), y, 1)
+    for speed in (1, 0, 1):
+        motion = propagate(ball, (0, 0.9), [0, speed], parameters={g: 2})
+        assert np.abs(motion["y"] - speed * (motion.t - motion.t**2)).max() < 1e-14
 
 
 def test_a_start_may_ask_for_pivots_of_its_own() -> None:
