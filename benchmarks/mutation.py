@@ -6,7 +6,8 @@ python benchmarks/mutation.py --count 500 --seed 1 --again   # survivors once mo
 python benchmarks/mutation.py --count 500 --seed 1 --again --part 2/3   # a third of them, beside two other processes
 
 The changes are those of cosmic-ray's operators, and of a few that it lacks (`mutants/operators.py`), at places drawn
-by the seed. First the quick tests run under coverage.py, so that each line is known with the tests that execute it.
+by the seed. First the quick tests run under coverage.py, so that each line is known with the tests that execute it;
+not where every survivor has a test that was written for it.
 Then each mutant meets those tests, the quickest first, up to a bound of time. What does not end is killed too. Tests
 that fail on canon as it is do not count. Every survivor is read; `mutants/survivors.toml` says why it changes nothing,
 or which test was written for it. What came of them is kept in results/mutation, and all else in out/mutation, so an
@@ -64,8 +65,9 @@ def main(arguments: list[str]) -> None:
         left = [mutant for mutant in left if mutant not in gone]
     if left:
         copy_of_checkout(HOME, place.copy)
-        for name, tests in places_of_tests(place.copy).items():
-            record_place(place.copy, name, tests, RECORD)
+        if not said.again or any(not written_for(mutant) for mutant in left):
+            for name, tests in places_of_tests(place.copy).items():
+                record_place(place.copy, name, tests, RECORD)
         try_all(mutants, left, read_record(RECORD), results, place, again=said.again)
         found = read_results(results)
     tell([mutant for mutant in mutants if mutant.key in found], found, explanations())
@@ -109,7 +111,7 @@ def try_all(
 ) -> None:
     """Try what is left of the mutants and write what came of each; then those anew whose killers always fail."""
     warm_up()
-    CACHES.mkdir(exist_ok=True)
+    CACHES.mkdir(parents=True, exist_ok=True)
     while left:
         for k, mutant in enumerate(left):
             found = (try_once_more if again else try_one)(mutant, record, place)
