@@ -9,7 +9,7 @@ import numpy as np
 
 from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import momentum, velocity
-from canon.expression.symbols.user_input import counted
+from canon.expression.symbols.user_input import counted, listed
 from canon.flow.equations.contact_regimes import check_contacts, impacts_pile_up, regimes_of
 from canon.flow.equations.left_out import check_left_out
 from canon.flow.integrate import integrate, silently
@@ -151,7 +151,7 @@ class RunRecord:
             return np.array([self.along(made(s).name) for s in q])
         except KeyError:
             raise AttributeError(
-                f"{kind} are not known of this system: its variables are {', '.join(map(str, q))}"
+                f"{kind} are not known of this system: its variables are {listed(q)}"
             ) from None
 
     def of_constraints(self, kind: str) -> Array:
@@ -275,7 +275,7 @@ class RunRecord:
     def __str__(self) -> str:
         if self.moving is None:
             return f"{counted(len(self.task.system.rows) // 2, 'degree')} of freedom"
-        return f"{self.moving.kind} in {', '.join(s.name for s in self.moving.state)}"
+        return f"{self.moving.kind} in {listed(self.moving.state)}"
 
 
 def recorded(

@@ -107,7 +107,9 @@ def test_the_mass_matrix_is_that_of_the_lagrangian():
     values = dict(zip(q, np.linspace(0.3, 1.1, 7), strict=True))
     due = np.array(sp.lambdify([[*values]], sp.hessian(more.L, more.velocities))([*values.values()]))
     nodes = [node for row in found.mass_matrix() for node in row]
-    assert np.allclose(np.array(found.graph.evaluate(nodes, values), dtype=float).reshape(7, 7), due, rtol=1e-14)
+    assert np.allclose(
+        np.array(found.graph.evaluate(nodes, values), dtype=float).reshape(7, 7), due, rtol=1e-14
+    )
     assert np.allclose(found.masses_at(values), due, rtol=1e-14)
 
 
@@ -154,6 +156,8 @@ def test_squares_of_velocities_are_found(term, squares):
     found = squares_of_velocities(reader, L)
     assert len(found.channels) == squares
     shown, v = reader.graph.to_sympy, (x.dot, y.dot)
-    speeds = [sum(shown(a) * v[i] for i, a in c.slopes) + (shown(c.rest) if c.rest else 0) for c in found.channels]
+    speeds = [
+        sum(shown(a) * v[i] for i, a in c.slopes) + (shown(c.rest) if c.rest else 0) for c in found.channels
+    ]
     again = sum((shown(c.weight) * u**2 / 2 for c, u in zip(found.channels, speeds, strict=True)), found.rest)
     assert sp.expand(again - L) == 0

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-__all__ = ["counted", "described", "given_kind", "of_sympy"]
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+__all__ = ["counted", "described", "given_kind", "listed", "of_sympy"]
 
 Kind = TypeVar("Kind")
 
 _SHOWN = 60
+_NAMED = 12
 
 
 def counted(number: int, one: str, many: str = "") -> str:
@@ -27,6 +31,18 @@ def counted(number: int, one: str, many: str = "") -> str:
     ('1 momentum', '0 steps')
     """
     return f"{number} {one if number == 1 else many or f'{one}s'}"
+
+
+def listed(names: Iterable[object]) -> str:
+    """Return names in a row, of very many the first ones and the last.
+
+    Examples
+    --------
+    >>> listed("xyz"), listed(f"q{k}" for k in range(80))
+    ('x, y, z', 'q0, q1, q2, q3, q4, q5, …, q79')
+    """
+    said = [str(name) for name in names]
+    return ", ".join(said if len(said) <= _NAMED else (*said[: _NAMED // 2], "…", said[-1]))
 
 
 def given_kind(x: Any, kinds: type[Kind] | tuple[type[Any], ...], name: str, instead: str = "") -> Any:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from canon.expression.symbols.input_in_words import counted, described, given_kind
+from canon.expression.symbols.input_in_words import counted, described, given_kind, listed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,6 +23,7 @@ __all__ = [
     "given_kind",
     "given_seconds",
     "given_symbols",
+    "listed",
 ]
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.expression.graph.number_systems import FLOAT64, LONGDOUBLE
+from canon.expression.symbols.user_input import listed
 from canon.flow.checked_request import hamilton_equations_of
 from canon.flow.system.scene_as_system import is_scene, opened
 from canon.flow.system_request import is_hamiltonian
@@ -73,7 +74,7 @@ def starts_of_energy(
     equations = _equations(system, dict(parameters or {}))
     names = {symbol.name: k for k, symbol in enumerate(equations.p)}
     if str(momentum) not in names:
-        raise KeyError(f"there is no momentum {momentum}, H has {', '.join(names)}")
+        raise KeyError(f"there is no momentum {momentum}, H has {listed(names)}")
     if not equations.autonomous:
         raise ValueError("H depends on time, so that its value is no energy to start with")
     row = len(equations.q) + names[str(momentum)]

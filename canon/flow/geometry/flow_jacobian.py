@@ -21,7 +21,7 @@ from canon.flow.system.hamiltonian_map import DRIFT_AND_KICK, KICK_AND_DRIFT
 from canon.flow.system.scene_as_system import is_scene, opened
 from canon.flow.system_request import any_task, refuse_contacts
 from canon.flow.trajectory import finished
-from canon.kernel.program.variational import variational
+from canon.kernel.program.variational import of_all_variables, variational
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -192,7 +192,7 @@ def _with_variations(task: Task, moving: MovingSystem | None) -> tuple[Array, Ar
         return compiled_jacobian(task)
     size = len(task.states[0])
     # What is integrated along unseen depends on the start too, and is shown here on the way only.
-    whole = task.system if moving is None else replace(task.system, varying=0, spare=0)
+    whole = task.system if moving is None else of_all_variables(task.system)
     # Orbits side by side, one variation each; where steps adapt, all variations of one orbit.
     orbits, columns = (size, 1) if task.method.engine.takes_step else (1, size)
     made = replace(

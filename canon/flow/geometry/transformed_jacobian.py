@@ -29,7 +29,7 @@ from canon.flow.transformed.extended_hamiltonian import extended
 from canon.flow.transformed.transformed_orbit import StepEnd, TransformedOrbit
 from canon.kernel.llvm.number_types import DOUBLE, double_pair
 from canon.kernel.program.program import exact_value
-from canon.kernel.program.variational import variational
+from canon.kernel.program.variational import of_all_variables, variational
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -66,7 +66,7 @@ def transformed_jacobian(
     assert isinstance(method, TimeTransformed)
     larger = extended(hamiltonian, method)
     scaled = replace(larger, H=_C * larger.H)  # pyright: ignore[reportOperatorIssue]
-    system = replace(variational(hamilton_equations_of(scaled, parameters, (_C.name,)), 1), varying=0)
+    system = of_all_variables(variational(hamilton_equations_of(scaled, parameters, (_C.name,)), 1))
     plan = task.plan
     instants = (
         np.linspace(plan.instants[0], plan.instants[-1], plan.wanted + 1) if plan.wanted else plan.instants

@@ -13,7 +13,7 @@ import sympy as sp
 from canon.cached_property import cached_property
 from canon.expression.graph.graph import Graph
 from canon.expression.symbols.symbol import time
-from canon.expression.symbols.user_input import counted
+from canon.expression.symbols.user_input import counted, listed
 from canon.flow.adaptive.held_steps import HeldSteps, LocalisedTerms
 from canon.flow.adaptive.taylor_events import TaylorEvents
 from canon.flow.adaptive.taylor_orbit import TaylorOrbit
@@ -110,8 +110,7 @@ class VectorFieldSystem:
         given = np.array([float(exact_number(value, "a component of the state")) for value in y])
         if given.shape != (len(self.x),):
             raise ValueError(
-                f"{counted(given.size, 'number')} given for the "
-                f"state ({', '.join(map(str, self.x))}): give one each"
+                f"{counted(given.size, 'number')} given for the state ({listed(self.x)}): give one each"
             )
         return given
 

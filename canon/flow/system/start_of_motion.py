@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from canon.expression.symbols.user_input import counted
+from canon.expression.symbols.user_input import counted, listed
 from canon.mechanics.algebra.dynamicsymbols import coordinate
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def state_in_order(y0: Any, state: Sequence[Symbol]) -> Any:
     given = np.asarray(y0)
     if given.ndim not in (1, 2) or given.shape[0] != len(names) or not given.size:
         raise ValueError(
-            f"y0 has shape {given.shape}; the state is ({', '.join(names)}), {counted(len(names), 'number')}: give "
+            f"y0 has shape {given.shape}; the state is ({listed(names)}), {counted(len(names), 'number')}: give "
             f"them in this order, shape ({len(names)},), several states as ({len(names)}, orbits), or by name"
         )
     return y0
@@ -66,14 +66,14 @@ def _by_name(y0: Mapping[Any, Any], names: Sequence[str]) -> list[Any]:
     for key, value in y0.items():
         name = key if isinstance(key, str) else coordinate(key).name
         if name not in names:
-            raise KeyError(f"y0 names {name}, which is no variable of the state ({', '.join(names)})")
+            raise KeyError(f"y0 names {name}, which is no variable of the state ({listed(names)})")
         if name in given:
             raise ValueError(f"y0 gives {name} twice; give it once")
         given[name] = value
     missing = [name for name in names if name not in given]
     if missing:
         raise KeyError(
-            f"y0 has no value for {', '.join(missing)}: every variable needs a start, 0 where it rests"
+            f"y0 has no value for {listed(missing)}: every variable needs a start, 0 where it rests"
         )
     orbits = {np.size(value) for value in given.values() if np.ndim(value)}
     if not orbits:

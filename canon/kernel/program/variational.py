@@ -13,11 +13,17 @@ if TYPE_CHECKING:
 
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["variational"]
+__all__ = ["of_all_variables", "variational"]
 
 
 _SYSTEMS = 16
 """Systems whose variational equations are kept: Newton's method asks for those of one system again and again."""
+
+
+@functools.lru_cache(maxsize=_SYSTEMS)
+def of_all_variables(system: HamiltonEquations) -> HamiltonEquations:
+    """Return equations in which what differs from orbit to orbit, or fills up a half, is a variable as the others are."""
+    return replace(system, varying=0, spare=0)
 
 
 @functools.lru_cache(maxsize=_SYSTEMS)
