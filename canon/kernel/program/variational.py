@@ -22,7 +22,7 @@ _SYSTEMS = 16
 
 @functools.lru_cache(maxsize=_SYSTEMS)
 def of_all_variables(system: HamiltonEquations) -> HamiltonEquations:
-    """Return equations in which what differs from orbit to orbit, or fills up a half, is a variable as the others are."""
+    """Return equations in which what differs from orbit to orbit, or fills up a half, is a variable like others."""
     return replace(system, varying=0, spare=0)
 
 
