@@ -35,6 +35,14 @@ LAYERS = {
 }
 
 
+def test_a_number_of_which_no_digit_is_known_is_none():
+    """cosh(cosh(cosh(23/4))) has some 10⁶⁷ digits before the point."""
+    towering = BranchPoint({x: sp.Rational(-23, 4)}, {})
+    assert towering.number(sp.cosh(sp.cosh(sp.cosh(x)))) is None
+    assert towering.number(sp.cosh(sp.cosh(x))) == pytest.approx(8.4196909e67)
+    assert BranchPoint({}, {}).number(sp.sin(sp.pi)) == 0
+
+
 def test_where_two_branches_meet_none_is_chosen():
     fold = Inversion(BranchPoint({x: sp.Rational(-1, 2)}, {Y: x**2 + x}))
     with pytest.raises(UnstatableError):
@@ -46,6 +54,7 @@ def test_where_two_branches_meet_none_is_chosen():
 
 @settings(max_examples=30, deadline=None)
 @example(["quadratic"], 38)
+@example(["cosh", "cosh", "cosh"], 35)
 @example(["square", "fraction", "quadratic"], 0)
 @given(st.lists(st.sampled_from(sorted(LAYERS)), min_size=1, max_size=3), st.integers(0, 50))
 def test_an_isolated_unknown_is_right_wherever_its_conditions_hold(layers, seed):

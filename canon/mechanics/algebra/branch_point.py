@@ -49,9 +49,11 @@ class BranchPoint:
             return None
 
     def number(self, f: Expr) -> float | None:
-        """Return the value of f as a float, or None where it is not a finite real number."""
+        """Return the value of f as a float, or None where it is not a finite real number, or no digit of it is known."""
         ball = self.value(f)
         if ball is None or not ball.imag.contains(0) or not ball.real.is_finite():
+            return None
+        if ball.real.rad() > 1 + abs(ball.real.mid()) / 1024:
             return None
         return float(ball.real.mid())
 
