@@ -49,7 +49,7 @@ class BranchPoint:
             return None
 
     def number(self, f: Expr) -> float | None:
-        """Return the value of f as a float, or None where it is not a finite real number, or no digit of it is known."""
+        """Return the value of f as a float, None where it is not a finite real number or no digit of it is known."""
         ball = self.value(f)
         if ball is None or not ball.imag.contains(0) or not ball.real.is_finite():
             return None
