@@ -50,6 +50,18 @@ def test_one_name_gives_one_symbol_and_several_a_tuple(make):
     assert make("x, y") == make("x y") == (alone, make("y"))
 
 
+@pytest.mark.parametrize("make", [coordinates, parameters])
+def test_ranges_are_sympys(make):
+    for names in ("q:3", "q1:2", "x y1:3", "a(1:3)b", "u:w"):
+        assert [s.name for s in make(names)] == [s.name for s in sp.symbols(names, seq=True)]
+    with pytest.raises(ValueError, match="x: is no range of names"):
+        make("x:")
+    with pytest.raises(ValueError, match="x3:1 is a range without names"):
+        make("x3:1")
+    with pytest.raises(ValueError, match="q2 named twice"):
+        make("q:3 q2")
+
+
 @pytest.mark.parametrize("names", ["", "  ", "x y x"])
 def test_unusable_names_are_refused(names):
     with pytest.raises(ValueError, match=r"names given|named twice"):

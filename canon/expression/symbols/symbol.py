@@ -117,14 +117,14 @@ def coordinates(names: str, **assumptions: bool) -> Any:
     Parameters
     ----------
     names
-        Names separated by spaces or commas, as :func:`sympy.symbols` takes them.
+        Names separated by spaces or commas, or ranges ``"q:8"``, ``"q1:9"``, as :func:`sympy.symbols` takes them.
     **assumptions
         SymPy assumptions such as ``positive=True``; real unless said otherwise.
 
     Returns
     -------
     Coordinate or tuple of Coordinate
-        One coordinate of one name, a tuple of several; of ``"x,"`` a tuple of one.
+        One coordinate of one name, a tuple of several; of ``"x,"`` and of a range always a tuple.
 
     Examples
     --------
@@ -132,6 +132,8 @@ def coordinates(names: str, **assumptions: bool) -> Any:
     >>> theta, phi = coordinates("theta phi")
     >>> theta.dot, theta.ddot, theta.momentum
     (theta_dot, theta_ddot, p_theta)
+    >>> coordinates("q1:4")
+    (q1, q2, q3)
     """
     assumed = _assumed(names, assumptions)
     return _one_or_all(names, [Coordinate(name, **assumed) for name in _split(names)])
@@ -143,14 +145,14 @@ def parameters(names: str, **assumptions: bool) -> Any:
     Parameters
     ----------
     names
-        Names separated by spaces or commas, as :func:`sympy.symbols` takes them.
+        Names separated by spaces or commas, or ranges ``"q:8"``, ``"q1:9"``, as :func:`sympy.symbols` takes them.
     **assumptions
         SymPy assumptions such as ``positive=True``; real unless said otherwise.
 
     Returns
     -------
     sympy.Symbol or tuple of sympy.Symbol
-        One parameter of one name, a tuple of several; of ``"m,"`` a tuple of one.
+        One parameter of one name, a tuple of several; of ``"m,"`` and of a range always a tuple.
 
     Examples
     --------
@@ -164,7 +166,7 @@ def parameters(names: str, **assumptions: bool) -> Any:
 
 
 def _one_or_all(names: str, made: list[Any]) -> Any:
-    return made[0] if len(made) == 1 and "," not in names else tuple(made)
+    return made[0] if len(made) == 1 and not {",", ":"} & {*names} else tuple(made)
 
 
 def velocity(q: Symbol) -> Rate:
@@ -249,10 +251,28 @@ def _assumed(names: Any, assumptions: Mapping[str, Any]) -> dict[str, bool]:
     return said
 
 
+def _in_ranges(names: Sequence[str]) -> list[str]:
+    """Return names with each range in it written out."""
+    found: list[str] = []
+    for name in names:
+        try:
+            made = [symbol.name for symbol in sp.symbols(name, seq=True)]
+        except ValueError as unknown:
+            raise ValueError(f"{name} is no range of names ({unknown}): write q:3 or q1:4") from unknown
+        if not made:
+            raise ValueError(
+                f"{name} is a range without names: write q:3 for q0, q1, q2, or q1:4 for q1, q2, q3"
+            )
+        found += made
+    return found
+
+
 def _split(names: Any) -> list[str]:
     if not isinstance(names, str):
         raise TypeError(f"the names should be one text, as in coordinates('theta phi'), not {names!r}")
     found = names.replace(",", " ").split()
+    if ":" in names:
+        found = _in_ranges(found)
     if not found:
         raise ValueError("no names given: write them separated by spaces, as in coordinates('theta phi')")
     repeated = sorted({name for name in found if found.count(name) > 1})

@@ -40,7 +40,7 @@ def squares_of_velocities(reader: Reader, L: Expr) -> Squares:
     >>> m = parameters("m", positive=True)
     >>> T = m * (x.dot**2 + (x.dot + sin(phi) * phi.dot)**2) / 2 + x**3 * phi.dot**2
     >>> found = squares_of_velocities(Reader(Graph(), (x, phi), time), T)
-    >>> [len(c.slopes) for c in found.channels], found.rest
+    >>> sorted(len(c.slopes) for c in found.channels), found.rest
     ([1, 2], phi_dot**2*x**3)
     """
     search = _Search(reader)
