@@ -48,7 +48,8 @@ def articulated_motion(lagrangian: Lagrangian, start: Mapping[Symbol, float]) ->
     work = [graph.mul((graph.from_sympy(Q), u)) for Q, u in zip(lagrangian.forces, speeds, strict=False)]
     if t in lagrangian.L.free_symbols:
         work.append(graph.negative(graph.derivative(graph.from_sympy(lagrangian.L), t)))
-    named = dict(zip(map(acceleration, q), chain.accelerations, strict=True))
+    named: dict[Symbol, int] = dict(zip(map(acceleration, q), chain.accelerations, strict=True))
+    named |= dict(zip(map(momentum, q), chain.momenta, strict=True))
     return FirstOrderMotion(
         kind="Lagrangian",
         graph=graph,
@@ -59,7 +60,7 @@ def articulated_motion(lagrangian: Lagrangian, start: Mapping[Symbol, float]) ->
         rates=(*speeds, *chain.accelerations),
         energy=chain.energy,
         power=graph.add(work),
-        named=named | dict(zip(map(momentum, q), chain.momenta, strict=True)),
+        named=named,
         masses=chain.mass_matrix,
         holds_from=lambda start: _pivots_hold(chain, start),
     )

@@ -67,13 +67,26 @@ class _Search:
 
     def __init__(self, reader: Reader) -> None:
         self.reader, self.graph = reader, reader.graph
-        self.number = {velocity(s): i for i, s in enumerate(reader.q)}
+        self.number: dict[Expr, int] = {velocity(s): i for i, s in enumerate(reader.q)}
         self.varying = {*reader.q, *self.number, reader.t}
         self._known: dict[tuple[Expr, Expr], _Affine | None] = {}
 
     def channels(self, term: Expr, weight: Expr, speed: Expr = sp.S.One) -> list[Channel] | None:
         """Return the channels of weight · speed² times a term of L; None where it is no sum of squares."""
         factors, moving = self._parted(term)
+        taken = self._weighed(factors, weight, speed)
+        if taken is None or len(moving) != 1:
+            return None
+        if isinstance(moving[0], sp.Add):
+            found = [self.channels(each, *taken) for each in moving[0].args]
+            return None if None in found else [c for each in found for c in each or ()]
+        if not isinstance(moving[0], sp.Pow) or moving[0].exp != 2:
+            return None
+        u = self._affine(moving[0].base, taken[1])
+        return None if u is None else [self._channel(self.reader.node(2 * taken[0]), u)]
+
+    def _weighed(self, factors: list[Expr], weight: Expr, speed: Expr) -> tuple[Expr, Expr] | None:
+        """Return weight and speed with constant factors, and roots of squares, taken in; None where others are left."""
         for factor in factors:
             if self.varying.isdisjoint(factor.free_symbols):
                 weight = weight * factor
@@ -81,15 +94,7 @@ class _Search:
                 speed = speed * factor.base ** (factor.exp / 2)
             else:
                 return None
-        if len(moving) != 1:
-            return None
-        if isinstance(moving[0], sp.Add):
-            found = [self.channels(each, weight, speed) for each in moving[0].args]
-            return None if None in found else [c for each in found for c in each or ()]
-        if not isinstance(moving[0], sp.Pow) or moving[0].exp != 2:
-            return None
-        u = self._affine(moving[0].base, speed)
-        return None if u is None else [self._channel(self.reader.node(2 * weight), u)]
+        return weight, speed
 
     def _parted(self, term: Expr) -> tuple[list[Expr], list[Expr]]:
         """Return the factors without and with velocities."""
