@@ -6,6 +6,7 @@ between two pieces, where χ = 1/2, the value is the mean of both.
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 import sympy as sp
@@ -16,6 +17,7 @@ __all__ = ["without_pieces"]
 _MADE_OF_PIECES = (sp.Piecewise, sp.Max, sp.Min, sp.Heaviside)
 
 
+@functools.lru_cache(maxsize=256)
 def without_pieces(expression: Expr) -> Expr:
     """Return an expression with ``sign`` and ``Abs`` in place of Piecewise, Max, Min and Heaviside.
 

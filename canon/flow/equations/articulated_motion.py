@@ -46,7 +46,7 @@ def articulated_motion(lagrangian: Lagrangian, start: Mapping[Symbol, float]) ->
     graph, q, v, t = chain.graph, lagrangian.q, lagrangian.velocities, lagrangian.t
     speeds = [graph.symbol(s) for s in v]
     work = [graph.mul((graph.from_sympy(Q), u)) for Q, u in zip(lagrangian.forces, speeds, strict=False)]
-    if t in lagrangian.L.free_symbols:
+    if chain.depends_on_time:
         work.append(graph.negative(graph.derivative(graph.from_sympy(lagrangian.L), t)))
     named: dict[Symbol, int] = dict(zip(map(acceleration, q), chain.accelerations, strict=True))
     named |= dict(zip(map(momentum, q), chain.momenta, strict=True))

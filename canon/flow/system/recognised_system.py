@@ -14,6 +14,7 @@ from canon.flow.equations.poisson_motion import poisson_motion
 from canon.flow.equations.quasi_velocity_motion import appell_motion, newton_euler_motion, quasi_motion
 from canon.flow.equations.routhian_motion import routhian_motion, routhian_state
 from canon.flow.system.written_with_signs import written_with_signs
+from canon.mechanics.algebra.substitution import symbols_within
 from canon.mechanics.hamilton.poisson_system import PoissonSystem
 from canon.mechanics.hamilton.traced_function import is_rates_function
 from canon.mechanics.hamilton.vector_field import VectorField
@@ -191,5 +192,5 @@ def _with(
 
 @functools.lru_cache(maxsize=256)
 def _symbols(f: Expr) -> frozenset[Any]:
-    """Return the symbols of an expression, for which SymPy walks the whole tree, as of an earlier call."""
-    return frozenset(f.free_symbols)
+    """Return the symbols of an expression, as of an earlier call."""
+    return symbols_within(f, {})

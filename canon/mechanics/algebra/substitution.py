@@ -24,6 +24,7 @@ __all__ = [
     "size",
     "substitute",
     "symbols_of",
+    "symbols_within",
     "terms_if_expanded",
 ]
 
@@ -139,6 +140,37 @@ def size(f: sp.Basic) -> int:
             sizes[node] = 1 + sum(sizes[part] for part in node.args)
             stack.pop()
     return sizes[f]
+
+
+def symbols_within(f: sp.Basic, known: dict[sp.Basic, frozenset[sp.Symbol]]) -> frozenset[sp.Symbol]:
+    """Return the free symbols of an expression, walking parts that occur often only once.
+
+    Parameters
+    ----------
+    f
+        The expression.
+    known
+        The symbols of parts, of other expressions too; what is found is added.
+
+    Examples
+    --------
+    >>> from sympy import Integral, cos, symbols
+    >>> x, y = symbols("x y")
+    >>> sorted(symbols_within(x * cos(y) + Integral(y**2, y), {}), key=str)
+    [x, y]
+    """
+    stack: list[sp.Basic] = [f]
+    while stack:
+        node = stack[-1]
+        walked = isinstance(node, sp.Add | sp.Mul | sp.Pow | sp.Function)
+        open_ = [part for part in node.args if part not in known] if walked else []
+        if open_:
+            stack.extend(open_)
+        else:
+            own = [known[part] for part in node.args] if walked else [frozenset(node.free_symbols)]
+            known[node] = frozenset[sp.Symbol]().union(*own)  # pyright: ignore[reportArgumentType]
+            stack.pop()
+    return known[f]
 
 
 def symbols_of(*expressions: Expr) -> list[sp.Symbol]:

@@ -56,6 +56,14 @@ class ArticulatedLagrangian:
         """The graph that all nodes are on."""
         return self.assembly.graph
 
+    @property
+    def depends_on_time(self) -> bool:
+        """Whether t stands in L."""
+        parts = [
+            node for c in self.assembly.channels for node in (*(a for _, a in c.slopes), c.rest or self.rest)
+        ]
+        return self.lagrangian.t in self.graph.all_symbols((*parts, self.rest))
+
     @cached_property
     def _slopes_of_rest(self) -> tuple[int, ...]:
         """∂R/∂q, then ∂R/∂q̇."""

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import sympy as sp
 
 from canon.expression.symbols.symbol import velocity
+from canon.mechanics.algebra.substitution import symbols_within
 from canon.mechanics.at_scale.kinetic_terms import Channel
 
 if TYPE_CHECKING:
-    from sympy import Expr
+    from sympy import Expr, Symbol
 
     from canon.mechanics.at_scale.kinetic_terms import Reader
 
@@ -70,6 +71,7 @@ class _Search:
         self.number: dict[Expr, int] = {velocity(s): i for i, s in enumerate(reader.q)}
         self.varying = {*reader.q, *self.number, reader.t}
         self._known: dict[tuple[Expr, Expr], _Affine | None] = {}
+        self._seen: dict[sp.Basic, frozenset[Symbol]] = {}
 
     def channels(self, term: Expr, weight: Expr, speed: Expr = sp.S.One) -> list[Channel] | None:
         """Return the channels of weight · speed² times a term of L; None where it is no sum of squares."""
@@ -88,7 +90,7 @@ class _Search:
     def _weighed(self, factors: list[Expr], weight: Expr, speed: Expr) -> tuple[Expr, Expr] | None:
         """Return weight and speed with constant factors, and roots of squares, taken in; None where others are left."""
         for factor in factors:
-            if self.varying.isdisjoint(factor.free_symbols):
+            if self.varying.isdisjoint(self._symbols(factor)):
                 weight = weight * factor
             elif isinstance(factor, sp.Pow) and factor.exp.is_Integer and factor.exp.is_even:
                 speed = speed * factor.base ** (factor.exp / 2)
@@ -96,11 +98,14 @@ class _Search:
                 return None
         return weight, speed
 
+    def _symbols(self, f: Expr) -> frozenset[Symbol]:
+        return symbols_within(f, self._seen)
+
     def _parted(self, term: Expr) -> tuple[list[Expr], list[Expr]]:
         """Return the factors without and with velocities."""
         parts: tuple[list[Expr], list[Expr]] = ([], [])
         for factor in sp.Mul.make_args(term):
-            parts[not self.number.keys().isdisjoint(factor.free_symbols)].append(factor)
+            parts[not self.number.keys().isdisjoint(self._symbols(factor))].append(factor)
         return parts
 
     def _channel(self, weight: int, u: _Affine) -> Channel:
