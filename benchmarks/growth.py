@@ -215,9 +215,9 @@ def table(names: list[str], quick: bool) -> None:
         found = [alone(name, size) for size in sizes]
         slope = math.log(found[-1] / found[-2]) / math.log(sizes[-1] / sizes[-2])
         print(row.what)
-        print("  size     " + "".join(f"{size:>10,}" for size in sizes))
+        print("  size     " + "".join(f"{size:>11,}" for size in sizes))
         print(
-            "  seconds  " + "".join(f"{seconds:>10.3f}" for seconds in found) + f"   slope {slope:.2f}",
+            "  seconds  " + "".join(f"{seconds:>11.3f}" for seconds in found) + f"   slope {slope:.2f}",
             flush=True,
         )
 

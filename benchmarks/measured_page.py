@@ -228,7 +228,19 @@ SECTIONS = {
         ),
         told=r"^(\d+) wrong answers",
     ),
-    "growth": Section("The time grows as the tables say."),
+    "growth": Section(
+        "Waiting grows about as the size where H is a sum over neighbours or links, and with claims, cases, samples and "
+        "orbits; of all pairs of bodies it grows as their number does. A slope is that of the logarithms between the two "
+        "largest sizes.",
+        (
+            Table(
+                ("what", "processor seconds, from the smallest size to the largest", "slope"),
+                r"^  seconds +([\d.][\d. ]*?) +slope ([\d.]+)$",
+                under=r"^(\w.*)$",
+            ),
+            Table(("what", "sizes"), r"^  size +(\S.*)$", under=r"^(\w.*)$"),
+        ),
+    ),
     "kernels": Section(
         "Compiled loops take about as long as a C program of the same method, less for many bodies "
         "and more for long chains; of many orbits "
