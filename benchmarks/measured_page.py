@@ -229,9 +229,9 @@ SECTIONS = {
         told=r"^(\d+) wrong answers",
     ),
     "growth": Section(
-        "Waiting grows about as the size where H is a sum over neighbours or links, and with claims, cases, samples and "
-        "orbits; of all pairs of bodies it grows as their number does. A slope is that of the logarithms between the two "
-        "largest sizes.",
+        "Waiting grows about as the size where H is a sum over neighbours or links, and with claims, cases, "
+        "samples and orbits; of all pairs of bodies it grows as their number does. A slope is that of the logarithms "
+        "between the two largest sizes.",
         (
             Table(
                 ("what", "processor seconds, from the smallest size to the largest", "slope"),
