@@ -237,7 +237,7 @@ def _with_numbers(
     if unknown:
         raise KeyError(f"{what} holds {', '.join(unknown)}: give each a number, parameters={{symbol: value}}")
     known = {graph.symbol(symbol): graph.number(parameters[symbol.name]) for symbol in others}
-    return graph.substitute([general], known)[0]
+    return graph.substitute([general], known)[0] if known else general
 
 
 def exact_number(value: Any, what: str) -> Fraction:
