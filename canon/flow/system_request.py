@@ -365,9 +365,7 @@ def _work_unit(motion: FirstOrderMotion, start: Mapping[Symbol, float]) -> Fract
         return Fraction(1)
     kind, operands, _ = graph.nodes[motion.energy]
     terms = operands if kind == "add" else (motion.energy,)
-    slopes = graph.gradient(motion.power, motion.state)
-    growth = graph.add([graph.mul(pair) for pair in zip(slopes, motion.rates, strict=True)])
-    found = graph.evaluate([*terms, motion.power, growth], start)
+    found = graph.evaluate([*terms, motion.power, motion.growth_of_power], start)
     *parts, power, rising = (abs(float(x)) for x in found)
     size = sum(parts) or power * start[SPAN] or rising * start[SPAN] ** 2
     return Fraction(2) ** math.frexp(size)[1] if 0 < size < math.inf else Fraction(1)

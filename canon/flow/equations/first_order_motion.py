@@ -156,6 +156,13 @@ class FirstOrderMotion:
         """The matrix of masses and constraints that impulses go through, nodes; empty where none is known."""
         return self.masses()
 
+    @cached_property
+    def growth_of_power(self) -> int:
+        """The node of the power's rate along the motion, where it does not depend on t itself."""
+        graph = self.graph
+        slopes = graph.gradient(graph.zero if self.power is None else self.power, self.state)
+        return graph.add([graph.mul(pair) for pair in zip(slopes, self.rates, strict=True)])
+
     @property
     def state(self) -> tuple[Symbol, ...]:
         """The variables, in the order of the state."""
