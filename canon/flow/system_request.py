@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 import reprlib
 from collections.abc import Mapping
@@ -37,7 +36,7 @@ from canon.flow.system.hamiltonian_map import (
 )
 from canon.flow.system.kept_equations import kept_equations
 from canon.flow.system.parameter_values import SpareParameters, check_given, check_known, check_parameters
-from canon.flow.system.recognised_system import recognised
+from canon.flow.system.recognised_system import recognised, symbols_in
 from canon.flow.system.scene_as_system import is_named, is_scene, opened, scene_of
 from canon.flow.system.start_of_motion import check_constraints, state_in_order
 from canon.kernel.llvm.number_types import double_pair
@@ -185,16 +184,14 @@ def _hamiltonian_course(request: Request) -> HamiltonianCourse:
     """Return the course of a Hamiltonian's motion."""
     variables = (*request.system.q, *request.system.p)
     if request.parameters:
-        check_given(request.parameters, _free_symbols(request.system.H), (*variables, request.system.t))
+        check_given(
+            request.parameters,
+            symbols_in(sympify(request.system.H, strict=True)),
+            (*variables, request.system.t),
+        )
         if not isinstance(request.parameters, SpareParameters):
             check_known(request.parameters, _symbols_of(request) - {*variables, request.system.t})
     return course_of(request)
-
-
-@functools.lru_cache(maxsize=64)
-def _free_symbols(H: Any) -> frozenset[Any]:
-    """Return the symbols of a Hamiltonian, for which SymPy walks the whole tree, as of an earlier call."""
-    return frozenset(sympify(H, strict=True).free_symbols)
 
 
 def _symbols_of(request: Request) -> set[Any]:
@@ -205,7 +202,7 @@ def _symbols_of(request: Request) -> set[Any]:
             functions += event.action.values()
         functions.append(event.function)
     others = {symbol for f in functions for symbol in sympify(f, strict=True).free_symbols}
-    return others | _free_symbols(request.system.H)
+    return others | symbols_in(sympify(request.system.H, strict=True))
 
 
 def _check_direction(contacts: Contacts, ends: tuple[Fraction, Fraction]) -> None:
@@ -262,7 +259,7 @@ def _system_task(request: Request) -> tuple[Task, MovingSystem]:
     derived = kept_equations(found.system, numbers, orbits_of, chosen.family).from_start(found, first)
     motion, met = with_bounces(derived.motion, met, first)
     hidden = _contacts_at_start(motion, orbits)
-    check_constraints(motion, start | hidden, _words(motion))
+    check_constraints(motion, start | hidden)
     if motion.contacts is not None:
         _check_direction(motion.contacts, ends)
         met = (*met, *(event for contact in motion.contacts.each for event in contact.events))
@@ -369,23 +366,6 @@ def _work_unit(motion: FirstOrderMotion, start: Mapping[Symbol, float]) -> Fract
     *parts, power, rising = (abs(float(x)) for x in found)
     size = sum(parts) or power * start[SPAN] or rising * start[SPAN] ** 2
     return Fraction(2) ** math.frexp(size)[1] if 0 < size < math.inf else Fraction(1)
-
-
-def _words(motion: FirstOrderMotion) -> list[str]:
-    """Return what to call what should vanish at the start."""
-    counts: dict[tuple[str, bool], int] = {}
-    said: list[str] = []
-    for residual in motion.residuals:
-        key = (residual.words, residual.left_out)
-        counts[key] = counts.get(key, 0) + 1
-        more = " that depends on others" if residual.left_out else ""
-        said.append(
-            {
-                "position": f"holonomic constraint {counts[key]}{more}",
-                "rate": f"the rate of constraint {counts[key]}{more}",
-            }.get(residual.words, f"balance {counts[key]}{more}")
-        )
-    return said
 
 
 _FOR_ANY_SYSTEM = ("taylor", "dop853", "rk4", "gauss", *KEEPING_CONSTRAINTS, "lie_poisson", "galerkin")

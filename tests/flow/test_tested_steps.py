@@ -195,14 +195,13 @@ SHAPES = {
 
 FEWER = (4, 7, 10, 14, 18, 24, 30)
 """Powers of the ways in which each of them needs machine code of its own, by far the most of the time."""
-OF_WAYS = {"double": POWERS[::2], "extended": FEWER[::2], "tolerance": FEWER}
-IN_QUAD = {"alone": 30, "over a spring": 7, "aside": 16, "driven": 24}
-"""A power of each shape for the way whose machine code takes longest."""
+OF_WAYS = {"double": POWERS[::2], "quad": (7, 16, 30), "extended": FEWER, "tolerance": FEWER}
 
 
 def scan_wells(name: str, shape: str) -> None:
-    powers, starts = ((IN_QUAD[shape],), STARTS[:3]) if name == "quad" else (OF_WAYS[name], STARTS)
-    for power, start in itertools.product(powers, starts):
+    for power, start in itertools.product(
+        OF_WAYS.get(name, POWERS), STARTS[:3] if name == "quad" else STARTS
+    ):
         H = SHAPES[shape](power)
         motion = propagate(H, (0, 2), start, samples=4, **WAYS[name])
         estimate = motion.error_estimate()

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from canon.expression.symbols.symbol import acceleration, momentum
 from canon.flow.equations.first_order_motion import FirstOrderMotion
-from canon.flow.equations.linear_equations import balanced_masses, has_diagonal_pivots, refuse_infinite
+from canon.flow.equations.linear_equations import pivots_hold
 from canon.mechanics.at_scale.articulated_lagrangian import articulated_lagrangian
 
 if TYPE_CHECKING:
@@ -68,8 +66,5 @@ def articulated_motion(lagrangian: Lagrangian, start: Mapping[Symbol, float]) ->
 
 def _pivots_hold(chain: ArticulatedLagrangian, start: Mapping[Symbol, float]) -> bool:
     """Tell whether no pivot is small at a start, in the order in which accelerations are eliminated."""
-    where, order = "the mass matrix", chain.tree.order(len(chain.lagrangian.q))
-    values = chain.masses_at(start)
-    refuse_infinite(values, where)
-    balanced = balanced_masses(values, chain.lagrangian.velocities, where)
-    return has_diagonal_pivots(balanced[np.ix_(order, order)])
+    velocities = chain.lagrangian.velocities
+    return pivots_hold(chain.masses_at(start), velocities, chain.tree.order(len(velocities)))

@@ -75,7 +75,7 @@ def contact_motion(system: UnilateralLagrangian, start: Mapping[Symbol, float]) 
     motion = regimes.motion()
     named = dict(motion.named)
     contacts = ContactEvents(regimes, start, named).contacts(system.restitution, at_start)
-    return replace(motion, named=named, contacts=contacts, holds_from=lambda _: False)
+    return replace(motion, named=named, contacts=contacts)
 
 
 def _check_side(free: FirstOrderMotion, walls: Sequence[Wall], start: Mapping[Symbol, float]) -> None:

@@ -21,7 +21,7 @@ import sympy as sp
 
 from canon.expression.graph.piecewise_form import without_pieces
 from canon.expression.symbols.symbol import acceleration
-from canon.flow.equations.first_order_motion import Residual
+from canon.flow.equations.first_order_motion import Residual, from_no_other_start
 from canon.flow.equations.lagrangian_motion import multiplier_symbol, values_at_start
 from canon.flow.equations.linear_equations import solved_from_start
 
@@ -114,6 +114,7 @@ class Regimes:
             reactions=tuple(graph.add(pair) for pair in zip(kept, added, strict=True)),
             masses=tuple,
             residuals=(*free.residuals, *self._residuals()),
+            holds_from=from_no_other_start,
         )
 
     @property

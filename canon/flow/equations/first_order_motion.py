@@ -25,7 +25,24 @@ if TYPE_CHECKING:
     from canon.expression.graph.graph import Graph
     from canon.flow.run.event import Event
 
-__all__ = ["FirstOrderMotion", "MovingSystem", "Residual", "moving_system"]
+__all__ = [
+    "FirstOrderMotion",
+    "MovingSystem",
+    "Residual",
+    "from_any_start",
+    "from_no_other_start",
+    "moving_system",
+]
+
+
+def from_no_other_start(_start: Mapping[Symbol, float]) -> bool:
+    """Equations that may be others from another start."""
+    return False
+
+
+def from_any_start(_start: Mapping[Symbol, float]) -> bool:
+    """Equations that are the same from every start."""
+    return True
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,7 +166,7 @@ class FirstOrderMotion:
     residuals: tuple[Residual, ...] = ()
     masses: Callable[[], tuple[tuple[int, ...], ...]] = tuple
     contacts: Contacts | None = None
-    holds_from: Callable[[Mapping[Symbol, float]], bool] = field(default=lambda _: False)
+    holds_from: Callable[[Mapping[Symbol, float]], bool] = from_no_other_start
 
     @cached_property
     def matrix(self) -> tuple[tuple[int, ...], ...]:

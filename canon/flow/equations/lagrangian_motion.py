@@ -19,12 +19,11 @@ import sympy as sp
 
 from canon.expression.symbols.symbol import acceleration, momentum
 from canon.flow.equations.articulated_motion import articulated_motion
-from canon.flow.equations.first_order_motion import FirstOrderMotion, Residual
+from canon.flow.equations.first_order_motion import FirstOrderMotion, Residual, from_no_other_start
 from canon.flow.equations.linear_equations import (
     SingularAtStartError,
-    balanced_masses,
-    has_diagonal_pivots,
     independent_rows,
+    pivots_hold,
     refuse_infinite,
     solved_from_start,
     undetermined,
@@ -160,20 +159,16 @@ def lagrangian_motion(
             *_residuals(graph, bound, speeds),
             *(replace(r, left_out=True) for _, more in left_out for r in _residuals(graph, more, speeds)),
         ),
-        holds_from=functools.partial(_pivots_hold, found) if bound is None else _never,
+        holds_from=functools.partial(_pivots_hold, found) if bound is None else from_no_other_start,
     )
-
-
-def _never(_start: Mapping[Symbol, float]) -> bool:
-    return False
 
 
 def _pivots_hold(found: SecondOrderEquations, start: Mapping[Symbol, float]) -> bool:
     """Tell whether elimination without exchanges of rows solves M q̈ = f from a start."""
-    n, where = len(found.q), "the mass matrix"
+    n = len(found.q)
     nodes = [found.M[max(i, j)][min(i, j)] for i in range(n) for j in range(n)]
-    values = values_at_start(found.graph, nodes, start, where)
-    return has_diagonal_pivots(balanced_masses(values.reshape(n, n), found.velocities, where))
+    values = values_at_start(found.graph, nodes, start, "the mass matrix")
+    return pivots_hold(values.reshape(n, n), found.velocities, range(n))
 
 
 def values_at_start(graph: Graph, nodes: Sequence[int], start: Mapping[Symbol, float], what: str) -> Array:

@@ -20,9 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "SingularAtStartError",
-    "balanced_masses",
-    "has_diagonal_pivots",
     "independent_rows",
+    "pivots_hold",
     "refuse_infinite",
     "solved_from_start",
     "undetermined",
@@ -82,7 +81,7 @@ def solved_from_start(
     [b/a, 1]
     """
     balanced = _balanced(values, symmetric=symmetric)
-    if symmetric and has_diagonal_pivots(balanced):
+    if symmetric and _has_diagonal_pivots(balanced):
         lower = [list(row[: i + 1]) for i, row in enumerate(matrix)]
         return solved_on_graph(graph, lower, right)
     return _eliminated(graph, matrix, right, balanced)
@@ -107,18 +106,21 @@ def _balanced(values: Array, *, symmetric: bool = True) -> Array:
     return balanced
 
 
-def balanced_masses(values: Array, velocities: Sequence[Symbol], where: str) -> Array:
-    """Return the masses at a start in the units best for them.
+def pivots_hold(masses: Array, velocities: Sequence[Symbol], order: Sequence[int]) -> bool:
+    """Tell whether the masses at a start are eliminated in an order, without exchanges, with no small pivot.
 
     Raises
     ------
     ValueError
-        They do not determine the accelerations there.
+        They are not finite, or do not determine the accelerations.
     """
+    where = "the mass matrix"
+    refuse_infinite(masses, where)
     try:
-        return _balanced(values)
+        balanced = _balanced(masses)
     except SingularAtStartError as singular:
         raise ValueError(undetermined(singular, velocities, where)) from None
+    return _has_diagonal_pivots(balanced[np.ix_(order, order)])
 
 
 def undetermined(singular: SingularAtStartError, velocities: Sequence[Symbol], where: str) -> str:
@@ -177,7 +179,7 @@ def independent_rows(values: Array) -> list[int]:
     return kept
 
 
-def has_diagonal_pivots(values: NDArray[np.float64]) -> bool:
+def _has_diagonal_pivots(values: NDArray[np.float64]) -> bool:
     """Return whether elimination without exchanges meets no small pivot."""
     rest = values.copy()
     for k in range(len(rest)):

@@ -10,7 +10,7 @@ import sympy as sp
 from canon.expression.graph.graph import Graph
 from canon.expression.symbols.symbol import time
 from canon.expression.symbols.user_input import given_expression, given_symbols
-from canon.flow.equations.first_order_motion import FirstOrderMotion
+from canon.flow.equations.first_order_motion import FirstOrderMotion, from_any_start
 from canon.mechanics.algebra.substitution import exchanged
 from canon.mechanics.hamilton.vector_field import VectorField
 
@@ -34,7 +34,7 @@ def field_motion(field: VectorField, t: Symbol = time) -> FirstOrderMotion:
     """
     graph = Graph()
     rates = tuple(graph.from_sympy(given_expression(f, "the vector field")) for f in field.components)
-    return FirstOrderMotion("vector field", graph, field.x, (), "x", t, rates, holds_from=lambda _: True)
+    return FirstOrderMotion("vector field", graph, field.x, (), "x", t, rates, holds_from=from_any_start)
 
 
 def is_heyoka_system(given: Any) -> bool:

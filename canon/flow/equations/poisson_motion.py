@@ -9,7 +9,7 @@ import sympy as sp
 
 from canon.expression.graph.graph import Graph
 from canon.expression.graph.piecewise_form import without_pieces
-from canon.flow.equations.first_order_motion import FirstOrderMotion
+from canon.flow.equations.first_order_motion import FirstOrderMotion, from_any_start
 from canon.flow.equations.lie_poisson_search import (
     LiePoissonSearch,
     NoLiePoissonPartsError,
@@ -45,7 +45,7 @@ def poisson_motion(system: PoissonSystem) -> FirstOrderMotion:
     changes = graph.derivative(H, system.t)
     power = None if changes == graph.zero else changes
     return FirstOrderMotion(
-        "Poisson system", graph, system.x, (), "x", system.t, rates, H, power, holds_from=lambda _: True
+        "Poisson system", graph, system.x, (), "x", system.t, rates, H, power, holds_from=from_any_start
     )
 
 

@@ -58,7 +58,7 @@ if TYPE_CHECKING:
         | str
     )
 
-__all__ = ["RecognisedSystem", "recognised"]
+__all__ = ["RecognisedSystem", "recognised", "symbols_in"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,12 +185,12 @@ def _with(
     derived: Callable[[Mapping[Symbol, float]], FirstOrderMotion],
     unknown: Sequence[Symbol] = (),
 ) -> RecognisedSystem:
-    used = frozenset[Any]().union(*map(_symbols, said))
+    used = frozenset[Any]().union(*map(symbols_in, said))
     parameters = sorted(used - {*state, t, *unknown}, key=lambda s: s.name)
     return RecognisedSystem(tuple(state), t, tuple(parameters), derived)
 
 
 @functools.lru_cache(maxsize=256)
-def _symbols(f: Expr) -> frozenset[Any]:
+def symbols_in(f: Expr) -> frozenset[Any]:
     """Return the symbols of an expression, as of an earlier call."""
     return symbols_within(f, {})

@@ -86,7 +86,7 @@ def _by_name(y0: Mapping[Any, Any], names: Sequence[str]) -> list[Any]:
     return [list(given[name]) if np.ndim(given[name]) else [given[name]] * count for name in names]
 
 
-def check_constraints(motion: FirstOrderMotion, start: Mapping[Symbol, Array], words: Sequence[str]) -> None:
+def check_constraints(motion: FirstOrderMotion, start: Mapping[Symbol, Array]) -> None:
     """Refuse a start that is not on the constraints.
 
     Parameters
@@ -95,8 +95,6 @@ def check_constraints(motion: FirstOrderMotion, start: Mapping[Symbol, Array], w
         The equations, with what should vanish.
     start
         Numbers for the state, the time and the parameters, arrays of shape (orbits,) where orbits differ.
-    words
-        What to call each residual.
 
     Raises
     ------
@@ -104,7 +102,7 @@ def check_constraints(motion: FirstOrderMotion, start: Mapping[Symbol, Array], w
         A constraint or its rate does not vanish; the sentence has the residual.
     """
     graph = motion.graph
-    for residual, name in zip(motion.residuals, words, strict=True):
+    for residual, name in zip(motion.residuals, _words(motion), strict=True):
         slopes = graph.gradient(residual.node, motion.state)
         found = [np.asarray(x, dtype=np.float64) for x in graph.evaluate([residual.node, *slopes], start)]
         values = [np.asarray(start[s], dtype=np.float64) for s in motion.state]
@@ -122,3 +120,20 @@ def check_constraints(motion: FirstOrderMotion, start: Mapping[Symbol, Array], w
                 f"the start is not on the constraints: {name} is {worst:.3g} there, not 0; choose the dependent "
                 f"{'coordinates' if residual.words == 'position' else 'velocities'} so that it vanishes"
             )
+
+
+def _words(motion: FirstOrderMotion) -> list[str]:
+    """Return what to call what should vanish at the start."""
+    counts: dict[tuple[str, bool], int] = {}
+    said: list[str] = []
+    for residual in motion.residuals:
+        key = (residual.words, residual.left_out)
+        counts[key] = counts.get(key, 0) + 1
+        more = " that depends on others" if residual.left_out else ""
+        said.append(
+            {
+                "position": f"holonomic constraint {counts[key]}{more}",
+                "rate": f"the rate of constraint {counts[key]}{more}",
+            }.get(residual.words, f"balance {counts[key]}{more}")
+        )
+    return said

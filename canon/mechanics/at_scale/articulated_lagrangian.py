@@ -13,6 +13,7 @@ from canon.expression.graph.graph import Graph
 from canon.mechanics.at_scale.articulated import tree_of_sums
 from canon.mechanics.at_scale.assembly import Assembly
 from canon.mechanics.at_scale.kinetic_terms import Reader
+from canon.mechanics.at_scale.second_order import at_constant_speed
 from canon.mechanics.at_scale.squares_of_velocities import squares_of_velocities
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["ArticulatedLagrangian", "articulated_lagrangian"]
 
 _FEWEST = 6
-"""Coordinates from which a tree spares more than it costs."""
+"""Systems of fewer coordinates are solved with their mass matrix."""
 
 
 @dataclass(frozen=True)
@@ -106,17 +107,12 @@ class ArticulatedLagrangian:
         for c in assembly.channels:
             for i, term in assembly.not_a_rate(c):
                 terms[i].append(term)
-        drifts = graph.directional(self._slopes_of_rest[n:], self._at_constant_speed)
+        drifts = at_constant_speed(graph, self._slopes_of_rest[n:], self.lagrangian)
         for i, (slope, drift) in enumerate(zip(self._slopes_of_rest, drifts, strict=False)):
             terms[i] += [slope, graph.negative(drift)]
         for i, force in enumerate(self.lagrangian.forces):
             terms[i].append(assembly.reader.node(force))
         return tuple(map(graph.plain_add, terms))
-
-    @property
-    def _at_constant_speed(self) -> dict[Symbol, int]:
-        rates = dict(zip(self.lagrangian.q, self.assembly.v, strict=True))
-        return {**rates, self.lagrangian.t: self.graph.one}
 
     @cached_property
     def _masses_of_rest(self) -> dict[tuple[int, int], int]:

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from canon.mechanics.lagrange.body import Body
     from canon.mechanics.lagrange.lagrangian import Lagrangian
 
-__all__ = ["SecondOrderEquations", "derivation", "derivation_of_lagrangian"]
+__all__ = ["SecondOrderEquations", "at_constant_speed", "derivation", "derivation_of_lagrangian"]
 
 
 @dataclass(frozen=True)
@@ -168,6 +168,13 @@ def _add_given(terms: list[list[int]], reader: Reader, V: Expr, forces: Sequence
         terms[i].append(reader.given(Q))
 
 
+def at_constant_speed(graph: Graph, nodes: Sequence[int], lagrangian: Lagrangian) -> list[int]:
+    """Return the rates of functions of q, q̇ and t along a motion without accelerations, all nodes."""
+    q, v = lagrangian.q, lagrangian.velocities
+    along = {**{s: graph.symbol(w) for s, w in zip(q, v, strict=True)}, lagrangian.t: graph.one}
+    return graph.directional(nodes, along)
+
+
 def derivation_of_lagrangian(lagrangian: Lagrangian) -> SecondOrderEquations:
     """Return the equations of motion of any Lagrangian, differentiated on a graph.
 
@@ -192,10 +199,9 @@ def derivation_of_lagrangian(lagrangian: Lagrangian) -> SecondOrderEquations:
     both = graph.gradient(graph.from_sympy(lagrangian.L), (*q, *v))
     momenta = both[len(q) :]
     M = [tuple(graph.derivative(p, w) for w in v[: i + 1]) for i, p in enumerate(momenta)]
-    along = {**{s: graph.symbol(w) for s, w in zip(q, v, strict=True)}, t: graph.one}
     Q = [(graph.from_sympy(force),) for force in lagrangian.forces] or [()] * len(q)
     f: list[int] = []
-    for i, drift in enumerate(graph.directional(momenta, along)):  # what changes p at constant q̇
+    for i, drift in enumerate(at_constant_speed(graph, momenta, lagrangian)):
         kind, operands, _ = graph.nodes[drift]
         left = map(graph.negative, operands if kind == "add" else (drift,))
         f.append(graph.add((both[i], *Q[i], *left)))
