@@ -133,7 +133,7 @@ def course_with(
         raise ValueError(
             "observables: 'energy' is the Hamiltonian, which is always observed; take another name"
         )
-    nodes = [system.hamiltonian, *(system.node(f, f"the observable {name!r}") for name, f in extra.items())]
+    nodes = [system.node(f, f"the observable {name!r}") for name, f in extra.items()]
     wanted, plan, frame = sampling(ends, request.samples, request.times), None, None
     if method.engine is FIXED_STEPS:
         plan = planned(wanted, request.step, method)

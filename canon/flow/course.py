@@ -15,6 +15,7 @@ from canon.flow.run.event import prepared_events
 from canon.flow.run.observables_along import AccuracyWarning, frames_of_canon
 from canon.flow.run.range_check import check_magnitudes, is_narrow
 from canon.flow.run.sampling_plan import Plan, Sampling, fictitious_plan
+from canon.flow.run.values_at_states import energy_and_rates
 from canon.flow.system.hamiltonian_map import DRIFT_AND_KICK, KICK_AND_DRIFT
 from canon.flow.task import Task
 
@@ -101,7 +102,12 @@ class Course:
             max_step=self.max_step,
         )
         _check_events(task)
-        if self.method.engine.takes_step and self.method not in (KICK_AND_DRIFT, DRIFT_AND_KICK):
+        smooth = bool(self.system.sums)  # others are written out
+        if (
+            self.method.engine.takes_step
+            and not smooth
+            and self.method not in (KICK_AND_DRIFT, DRIFT_AND_KICK)
+        ):
             _warn_of_kinks(self.system, self.method)
         return task
 
@@ -115,10 +121,9 @@ def _rates_at_start(
     whole = states if narrow else states.astype(np.longdouble) + low
     # Numbers are quicker than arrays of one number.
     point = whole[:, 0] if whole.shape[1] == 1 else whole
-    values = dict(zip(system.inputs, (*point, point.dtype.type(float(start))), strict=True))
-    nodes = (system.hamiltonian, *system.velocity, *system.force)
+    arithmetic = FLOAT64 if narrow else LONGDOUBLE
     try:
-        found = system.graph.evaluate(nodes, values, FLOAT64 if narrow else LONGDOUBLE)
+        found = energy_and_rates(system, point, point.dtype.type(float(start)), arithmetic)
     except OverflowError as large:
         raise ValueError(
             "a constant or a parameter of H is beyond 1e308: choose other units; exponents with floats, which SymPy "

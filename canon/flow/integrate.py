@@ -93,7 +93,14 @@ def _in_fixed_steps(
     loop = compiled_loop(task.system, method, fixed_precision(task.precision), states[0].shape[1])
     watch = None
     if task.cadence is not None:
-        watch = loop_observables(task.system, task.nodes, loop, task.states, task.plan.start, task.cadence)
+        watch = loop_observables(
+            task.system,
+            (task.system.hamiltonian, *task.nodes),
+            loop,
+            task.states,
+            task.plan.start,
+            task.cadence,
+        )
     try:
         made = fixed_steps(task.system, loop, method, states, task.plan, progress, watch, so_far, events)
     except NonFiniteStateError as lost:

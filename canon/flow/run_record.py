@@ -14,7 +14,7 @@ from canon.flow.equations.contact_regimes import check_contacts, impacts_pile_up
 from canon.flow.equations.left_out import check_left_out
 from canon.flow.integrate import integrate, silently
 from canon.flow.run.non_finite_state import NonFiniteStateError, PiledUpError, named
-from canon.flow.run.observables_along import measured, size_of_terms, warn_of_jumps
+from canon.flow.run.observables_along import measured, measured_with_energy, size_of_terms, warn_of_jumps
 from canon.flow.run.samples import Samples, Statistics
 from canon.flow.system.named_values import node_along, variables_of
 from canon.frozen_mapping import FrozenMapping
@@ -234,7 +234,8 @@ class RunRecord:
         if task.single and watched is not None:
             watched = watched[..., 0]
         extra = () if moving is None or moving.energy is None else (moving.energy,)
-        (value, defect), *rest = measured(task.system, (*task.nodes, *extra), found, task.precision_name)
+        nodes = (*task.nodes, *extra)
+        (value, defect), *rest = measured_with_energy(task.system, nodes, found, task.precision_name)
         energy, change = rest.pop() if extra else (value, defect)
         names = ("energy", *task.names)
         statistics = (

@@ -41,7 +41,7 @@ class Task:
     plan
         Steps and sample times.
     names, nodes
-        The observables; H, then they, on the system's graph.
+        The observables, on the system's graph.
     cadence, events, dense
         As :func:`canon.flow.propagation.propagate` takes them.
     fictitious

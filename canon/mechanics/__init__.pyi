@@ -9,6 +9,11 @@ from .at_scale.numeric_functions import mass_condition_function as mass_conditio
 from .at_scale.second_order import SecondOrderEquations as SecondOrderEquations
 from .at_scale.second_order import derivation as derivation
 from .at_scale.second_order import derivation_of_lagrangian as derivation_of_lagrangian
+from .at_scale.sums_over_rows import chain_sum as chain_sum
+from .at_scale.sums_over_rows import lattice_sum as lattice_sum
+from .at_scale.sums_over_rows import pair_sum as pair_sum
+from .at_scale.sums_over_rows import row_sum as row_sum
+from .at_scale.sums_over_rows import written_out as written_out
 from .canonical.bracket_law import antisymmetry as antisymmetry
 from .canonical.bracket_law import bilinearity as bilinearity
 from .canonical.bracket_law import fundamental_brackets as fundamental_brackets

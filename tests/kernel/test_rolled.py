@@ -12,7 +12,7 @@ from canon.kernel.llvm.number_types import DOUBLE, MachineType
 from canon.kernel.llvm.writer import Writer
 from canon.kernel.loops import splitting
 from canon.kernel.program.hamilton_equations import equations
-from canon.kernel.program.operation_families import families_of
+from canon.kernel.program.operation_families import families_of, families_of_program
 
 
 def chain(n):
@@ -117,12 +117,12 @@ def test_long_chains_are_rolled_without_tables_and_small_systems_are_not():
 def test_a_chains_forces_run_one_behind_its_bonds_and_nothing_lies_in_memory():
     q, H = chain(100)
     system = equations(H, q, tuple(s.momentum for s in q), time, {})
-    made = rolled._Rolling(Writer(DOUBLE), system.program(system.force), "%q", "%t")
+    made = rolled._Rolling(Writer(DOUBLE), families_of_program(system.program(system.force)), "%q", "%t")
     assert [loop.size for loop in made.loops if loop.after] == [99]
     # The squares of the two ends.
     assert [len(made.families[kind].members) for kind in made.arrays] == [2]
     q, H = toda(100)
     system = equations(H, q, tuple(s.momentum for s in q), time, {})
-    made = rolled._Rolling(Writer(DOUBLE), system.program(system.force), "%q", "%t")
+    made = rolled._Rolling(Writer(DOUBLE), families_of_program(system.program(system.force)), "%q", "%t")
     # The ends' forces read the exponentials of two bonds.
     assert {made.families[kind].operation for kind in made.arrays} == {"exp"}

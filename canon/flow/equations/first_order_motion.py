@@ -15,7 +15,7 @@ import sympy as sp
 
 from canon.cached_property import cached_property
 from canon.frozen_mapping import FrozenMapping
-from canon.kernel.program.hamilton_equations import HamiltonEquations
+from canon.kernel.program.hamilton_equations import EquationNodes, HamiltonEquations
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -299,14 +299,11 @@ def moving_system(
         second.append(sp.Dummy(each.name, real=True))
         after.append(graph.zero)
     equations = HamiltonEquations(
-        graph=graph,
+        EquationNodes(graph, conserved, tuple(forward), tuple(after)),
         q=tuple(first),
         p=tuple(second),
         t=motion.t,
         parameters=dict(numbers),
-        hamiltonian=conserved,
-        velocity=tuple(forward),
-        force=tuple(after),
         separable=False,
         quadratic_kinetic=False,
         autonomous=motion.t not in graph.all_symbols((*forward, *after, conserved)),

@@ -262,6 +262,8 @@ _LOOPS: dict[str, Callable[[HamiltonEquations, Any, Precision, int], Loop]] = {
 def _with_lanes(number: MachineType, system: HamiltonEquations, orbits: int, stages: int) -> MachineType:
     if orbits == 1 or number.scalar == "x86_fp80":  # x87 numbers have no SIMD instructions
         return number
+    if system.loops is not None:
+        return dataclasses.replace(number, lanes=simd_bytes() // number.alignment)
     registers, force = 1, system.program(system.force)
     if len(force.instructions) <= _SMALL:
         waiting = force.count("sqrt") + force.count("div") > 0 and not number.pair

@@ -22,7 +22,12 @@ from canon.flow.run.event import Event, PreparedEvent
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.kernel.heyoka_bridge import heyoka_expressions
 from canon.kernel.heyoka_compiled import compiled_integrator
-from canon.kernel.program.hamilton_equations import HamiltonEquations, exact_number, exact_numbers
+from canon.kernel.program.hamilton_equations import (
+    EquationNodes,
+    HamiltonEquations,
+    exact_number,
+    exact_numbers,
+)
 from canon.kernel.program.series_gaps import may_have_gaps
 from canon.mechanics.hamilton.vector_field import VectorField
 
@@ -81,14 +86,11 @@ class VectorFieldSystem:
     def equations(self) -> HamiltonEquations:
         """The same equations as the engines take them; all variables stand in their first half."""
         return HamiltonEquations(
-            graph=self.graph,
+            EquationNodes(self.graph, self.graph.zero, self.rates, ()),
             q=self.x,
             p=(),
             t=self.t,
             parameters=self.numbers,
-            hamiltonian=self.graph.zero,
-            velocity=self.rates,
-            force=(),
             separable=False,
             quadratic_kinetic=False,
             autonomous=self.t not in self.graph.all_symbols(self.rates),

@@ -194,7 +194,7 @@ class Kinks:
             for symbol, (a, b) in zip(self.system.inputs[:-1], pairs, strict=True)
         ]
         half = len(self.system.velocity)
-        system = replace(above.system, velocity=tuple(rates[:half]), force=tuple(rates[half:]))
+        system = replace(above.system, written=above.system.moving_by(rates[:half], rates[half:]))
         others = {j: node for j, node in above.functions.items() if j != k}
         return Regime(signs, system, others)
 
@@ -249,9 +249,7 @@ class Kinks:
         *rates, energy = self._nodes(signs)
         return replace(
             own,
-            hamiltonian=energy,
-            velocity=tuple(rates[:n]),
-            force=tuple(rates[n:]),
+            written=own.moving_by(rates[:n], rates[n:], energy),
             named=dict(zip(own.named, named, strict=True)),
         )
 

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from canon.array import all_finite
 from canon.expression.graph.number_systems import FLOAT64, LONGDOUBLE, multiprecision
+from canon.flow.run.values_at_states import energy_of_sums, energy_terms, size_of_energy
 from canon.kernel.program.localised_terms import exponents_of
 from canon.kernel.quad_arithmetic import quad_array, quad_for
 
@@ -31,6 +32,7 @@ __all__ = [
     "frames_of_canon",
     "jumped",
     "measured",
+    "measured_with_energy",
     "size_of_terms",
     "values_in",
     "warn_of_jumps",
@@ -64,6 +66,17 @@ def measured(
     values = _values_for(system, nodes, precision)
     found = values(system, nodes, samples.t, samples.y, samples.carried)
     return [(_rounded(value), _rounded(value - value[:1])) for value in found]
+
+
+def measured_with_energy(
+    system: HamiltonEquations, nodes: Sequence[int], samples: Samples, precision: str
+) -> list[tuple[Array, Array]]:
+    """Return the same of H and of each node; sums over rows are not written out where long doubles do for H."""
+    if not (system.sums and _in_long_doubles(precision)):
+        return measured(system, (system.hamiltonian, *nodes), samples, precision)
+    energy = energy_of_sums(system, samples.y.astype(np.longdouble) + samples.carried, samples.t)
+    others = measured(system, nodes, samples, precision) if nodes else []
+    return [(_rounded(energy), _rounded(energy - energy[:1])), *others]
 
 
 def _rounding_of(precision: str) -> float:
@@ -170,10 +183,7 @@ def size_of_terms(system: HamiltonEquations, samples: Samples) -> Array:
 
     They do where a pendulum −cos θ is released from the horizontal: what rounding leaves of them is no measure.
     """
-    values = dict(zip(system.inputs, (*samples.y, samples.t[:, np.newaxis]), strict=True))
-    with np.errstate(all="ignore"):
-        found = system.graph.evaluate(_terms(system), values)
-    sizes = np.sum([abs(np.broadcast_to(v, samples.y.shape[1:])) for v in found], axis=0)
+    sizes = size_of_energy(system, samples.y, samples.t)
     if (sizes[0] > _VANISHING * sizes.max(axis=0)).all():
         return sizes[0]
     usual, large = np.median(sizes, axis=0), np.quantile(sizes, 0.9, axis=0)
@@ -189,7 +199,7 @@ def energy_rounding(system: HamiltonEquations, samples: Samples, precision: str)
     """
     graph, size = system.graph, size_of_terms(system, samples)
     values = dict(zip(system.inputs, (*samples.y, samples.t[:, np.newaxis]), strict=True))
-    for term in _terms(system):
+    for term in energy_terms(system):
         exponents = exponents_of(graph, [term])
         if exponents:
             with np.errstate(all="ignore"):
@@ -197,11 +207,6 @@ def energy_rounding(system: HamiltonEquations, samples: Samples, precision: str)
                 wrong = np.max([np.abs(found * power) for power in powers], axis=0)
             size = size + np.broadcast_to(np.nan_to_num(wrong), samples.y.shape[1:]).max(axis=0)
     return _rounding_of(precision) * size
-
-
-def _terms(system: HamiltonEquations) -> tuple[int, ...]:
-    node = system.graph.nodes[system.hamiltonian]
-    return node.operands if node.kind == "add" else (system.hamiltonian,)
 
 
 def _rounded(values: npt.NDArray[Any]) -> Array:

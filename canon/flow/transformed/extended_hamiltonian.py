@@ -215,8 +215,8 @@ def extended_system(
         q=q,
         p=p,
         t=hamiltonian.t,
-        hamiltonian=energy,
-        velocity=(*slopes[n:], *stays),
-        force=(*(graph.negative(slope) for slope in slopes[:n]), *stays),
+        written=system.moving_by(
+            (*slopes[n:], *stays), (*(graph.negative(slope) for slope in slopes[:n]), *stays), energy
+        ),
     )
     return ExtendedSystem(system, physical, system.node(larger.rate, "dt/ds"), str(larger.rate), step)

@@ -22,7 +22,7 @@ _ALIGNED = 8
 
 
 def write_pair_forces(
-    w: Writer, forces: PairForces, state: str, rest: Callable[[Callable[[str, str], None]], None],
+    w: Writer, forces: PairForces, state: str, rest: Callable[[Callable[[str, str], None]], None] | None,
     take: Callable[[str, str], None],
 ) -> None:  # fmt: skip
     """Write the forces of pairs, and what is left, as loops.
@@ -36,7 +36,8 @@ def write_pair_forces(
     state
         The array that holds q.
     rest
-        Writes the rest of the forces; what it is given takes the number of a component and its value.
+        Writes the rest of the forces, where there is one; what it is given takes the number of a component and its
+        value.
     take
         Writes what is done with a component of the force, given its number and its value; called inside a loop.
     """
@@ -51,25 +52,30 @@ def write_pair_forces(
         own = w.let(f"mul i64 {i}, {axes}")
         for k, array in enumerate(place):
             w.store(w.load(state, w.let(f"add i64 {own}, {k}")), array, i)
-    if forces.rest:
+    if rest is not None:
         left = w.array(bodies * axes)
         rest(lambda i, value: w.store(value, left, i))
         with w.loop(0, bodies) as i:
             own = w.let(f"mul i64 {i}, {axes}")
             for k, array in enumerate(force):
                 w.store(w.load(left, w.let(f"add i64 {own}, {k}")), array, i)
-    strength = _strength(w, forces.strengths, filled)
+    strength = _strength(w, forces.strengths, filled) if forces.strengths else None
+    empty = [Fraction(0)] * (filled - bodies)
+    numbers = [w.number_table([*column, *empty]) for column in forces.numbers]
     with w.loop(0, bodies) as j:
         source = [w.load(array, j) for array in place]
+        numbers_of_source = [number(j) for number in numbers]
         row = w.let(f"mul i64 {j}, {filled}")
         with w.loop(0, filled) as i:
             target = [w.load(array, i) for array in place]
             is_itself = w.let(f"icmp eq i64 {i}, {j}")
-            factor = strength(w.let(f"add i64 {row}, {i}"))
-            for array, pull in zip(force, w.program(forces.gradient, [*target, *source]), strict=True):
-                kind = w.number.name
+            factor = strength and strength(w.let(f"add i64 {row}, {i}"))
+            arguments = [*target, *source, *(number(i) for number in numbers), *numbers_of_source]
+            for array, pull in zip(force, w.program(forces.gradient, arguments), strict=True):
+                kind, so_far = w.number.name, w.load(array, i)
                 kept = w.let(f"select i1 {is_itself}, {kind} {zero}, {kind} {pull}")
-                w.store(w.multiply_add(factor, kept, w.load(array, i)), array, i)
+                added = w.multiply_add(factor, kept, so_far) if factor else w.algebra("add", kept, so_far)
+                w.store(added, array, i)
     with w.loop(0, bodies) as i:
         own = w.let(f"mul i64 {i}, {axes}")
         for k, array in enumerate(force):

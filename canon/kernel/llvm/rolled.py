@@ -13,12 +13,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from canon.kernel.program.operation_families import LEAVES, families_of, has_stride, operand_places
+from canon.kernel.program.operation_families import LEAVES, families_of_program, has_stride
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from canon.kernel.llvm.writer import Writer
+    from canon.kernel.program.operation_families import Families
     from canon.kernel.program.program import Program
 
 __all__ = ["is_worth_rolling", "write_rolled"]
@@ -45,21 +46,23 @@ def is_worth_rolling(steps: Program, beside: Callable[[], Program] | None = None
         return False
     if count <= _REGULAR and not (beside is not None and is_worth_rolling(beside())):
         return False
-    families, location = families_of(steps)
-    places = operand_places(steps, families, location)
-    tables = sum(not has_stride(column) for columns in places for column in columns)
+    tables = sum(
+        not has_stride(column) for columns in families_of_program(steps).places for column in columns
+    )
     return count > _IRREGULAR or tables == 0
 
 
-def write_rolled(w: Writer, steps: Program, state: str, clock: str, take: Callable[[str, str], None]) -> None:
-    """Write a program as loops.
+def write_rolled(
+    w: Writer, steps: Families, state: str, clock: str, take: Callable[[str, str], None]
+) -> None:
+    """Write families of operations as loops.
 
     Parameters
     ----------
     w
         The function's writer.
     steps
-        The program, a function of (q, p, t).
+        The families, functions of (q, p, t).
     state, clock
         The arrays that hold (q, p), and t.
     take
@@ -81,12 +84,10 @@ class _Loop:
 
 
 class _Rolling:
-    def __init__(self, w: Writer, steps: Program, state: str, clock: str) -> None:
-        self.w, self.steps, self.state, self.clock = w, steps, state, clock
-        self.families, self.location = families_of(steps)
-        self.places = operand_places(steps, self.families, self.location)
+    def __init__(self, w: Writer, steps: Families, state: str, clock: str) -> None:
+        self.w, self.state, self.clock = w, state, clock
+        self.families, self.places, self.outputs = steps.families, steps.places, steps.outputs
         self.loops = self._together(self._separate())
-        self.outputs = self._outputs()
         self.arrays = {kind: w.array(len(self.families[kind].members)) for kind in sorted(self._kept())}
 
     def write(self, take: Callable[[str, str], None]) -> None:
@@ -133,7 +134,7 @@ class _Rolling:
             size, earliest = len(family.members), 0
             for operand, places in zip(family.operands, self.places[number], strict=True):
                 if operand in loop_of:
-                    aligned = places == list(range(size)) and loops[loop_of[operand]].size == size
+                    aligned = places == range(size) and loops[loop_of[operand]].size == size
                     earliest = max(earliest, loop_of[operand] + (not aligned))
             fitting = (k for k in range(earliest, len(loops)) if loops[k].size == size)
             chosen = next(fitting, len(loops))
@@ -160,7 +161,7 @@ class _Rolling:
         if before.size <= _WRITTEN_OUT + 1 or loop.size != before.size - 1:
             return False
         return all(
-            places[0] in (0, 1) and places == list(range(places[0], places[0] + loop.size))
+            places[0] in (0, 1) and places == range(places[0], places[0] + loop.size)
             for number in loop.families
             for operand, places in zip(self.families[number].operands, self.places[number], strict=True)
             if operand in before.families
@@ -177,20 +178,10 @@ class _Rolling:
 
     # what lies in memory -------------------------------------------------------------------------
 
-    def _outputs(self) -> dict[int, tuple[list[int], list[int]]]:
-        """Return, for each family that has outputs, their numbers and which members they are."""
-        found: dict[int, tuple[list[int], list[int]]] = {}
-        for i, register in enumerate(self.steps.outputs):
-            kind, place = self.location[register]
-            rows, places = found.setdefault(kind, ([], []))
-            rows.append(i)
-            places.append(place)
-        return dict(sorted(found.items()))
-
     def _is_taken_at_once(self, kind: int) -> bool:
         """Return whether every member of a family is one output, in order: then none waits for the others."""
         family = self.families[kind]
-        return family.operation not in LEAVES and self.outputs[kind][1] == list(range(len(family.members)))
+        return family.operation not in LEAVES and self.outputs[kind][1] == range(len(family.members))
 
     def _kept(self) -> set[int]:
         """Return the families that are read from memory: by other loops, or as outputs later.
@@ -272,6 +263,8 @@ class _Rolling:
             return self.w.load(self.state, index)
         if family.operation == "time":
             return self.w.load(self.clock, 0)
+        if family.operation == "numbers":
+            return self.w.number_table(family.numbers)(index)
         return self.w.load(self.arrays[kind], index)
 
     def _index(self, places: Sequence[int], k: str) -> str:

@@ -10,6 +10,7 @@ from canon.kernel.llvm.number_types import DOUBLE, MachineType
 from canon.kernel.llvm.pair_loops import write_pair_forces
 from canon.kernel.llvm.rolled import is_worth_rolling, write_rolled
 from canon.kernel.llvm.writer import Writer
+from canon.kernel.program.operation_families import families_of_program
 from canon.kernel.program.pairwise import pair_forces
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from canon.kernel.program.hamilton_equations import HamiltonEquations
     from canon.kernel.program.pairwise import PairForces
     from canon.kernel.program.program import Program
+    from canon.kernel.program.repeated.rates_in_loops import RatesInLoops
 
     _Take: TypeAlias = Callable[[str, str], None]
     """What is done with the number of a component and its rate."""
@@ -103,6 +105,8 @@ class SplittingWriter:
         The times that drifts and kicks have come to.
     pairs
         The force as a sum over pairs of bodies, where it is one.
+    loops
+        Drift and kick as loops, where H is kept as sums over rows.
     kick_first
         Whether the last force is used again.
     """
@@ -116,6 +120,7 @@ class SplittingWriter:
     drift_clock: str
     kick_clock: str
     pairs: PairForces | None
+    loops: RatesInLoops | None
     kick_first: bool
     programs: dict[tuple[int, ...], Program] = field(
         default_factory=dict[tuple[int, ...], "Program"], repr=False
@@ -130,7 +135,9 @@ class SplittingWriter:
         gap = _gap(n)
         y, e = w.array(2 * n + gap), w.array(2 * n + gap) if compensated else ""
         force, drift_clock, kick_clock = w.array(n), w.array(1), w.array(1)
-        return cls(w, system, y, e, gap, force, drift_clock, kick_clock, pair_forces(system), kick_first)
+        loops = system.loops
+        pairs = pair_forces(system) if loops is None else loops.pairs
+        return cls(w, system, y, e, gap, force, drift_clock, kick_clock, pairs, loops, kick_first)
 
     @property
     def n(self) -> int:
@@ -139,7 +146,11 @@ class SplittingWriter:
 
     def drift(self, coefficient: str) -> None:
         """Write q ← q + coefficient · ∂H/∂p."""
-        self.evaluate(self.system.velocity, self.n, self.kick_clock, self._moving(0, coefficient))
+        take = self._moving(0, coefficient)
+        if self.loops is None:
+            self.evaluate(self.system.velocity, self.n, self.kick_clock, take)
+        elif self.loops.velocity is not None:
+            write_rolled(self.w, self.loops.velocity, self.w.at(self.y, self.gap), self.kick_clock, take)
         self._advance(self.drift_clock, coefficient)
 
     def kick(self, coefficient: str) -> None:
@@ -181,12 +192,20 @@ class SplittingWriter:
         self.w.store(time, self.kick_clock, 0)
 
     def _evaluate_force(self, take: _Take) -> None:
-        w, force, clock = self.w, self.system.force, self.drift_clock
-        if self.pairs is None:
-            self.evaluate(force, 0, clock, take)
-            return
-        others = self.pairs.rest
-        write_pair_forces(w, self.pairs, self.y, lambda each: self.evaluate(others, 0, clock, each), take)
+        w, pairs = self.w, self.pairs
+        rest = self._rest_of_force()
+        if pairs is not None:
+            write_pair_forces(w, pairs, self.y, rest, take)
+        elif rest is not None:
+            rest(take)
+
+    def _rest_of_force(self) -> Callable[[_Take], None] | None:
+        """Return what writes the force but for that of pairs, where there is such a one."""
+        if self.loops is not None:
+            loops = self.loops.force
+            return loops and (lambda take: write_rolled(self.w, loops, self.y, self.drift_clock, take))
+        nodes = self.system.force if self.pairs is None else self.pairs.rest
+        return (lambda take: self.evaluate(nodes, 0, self.drift_clock, take)) if nodes else None
 
     def evaluate(self, nodes: Sequence[int], reads: int, clock: str, take: _Take) -> None:
         """Write functions of t and the n components from ``reads`` on, and hand each to ``take``."""
@@ -194,7 +213,7 @@ class SplittingWriter:
         steps = self._program(nodes)
         state = w.at(self.y, self.gap) if reads else self.y
         if is_worth_rolling(steps, (lambda: self._program(system.force)) if reads else None):
-            write_rolled(w, steps, state, clock, take)
+            write_rolled(w, families_of_program(steps), state, clock, take)
             return
         arguments = ["poison"] * (2 * n + 1)
         for i in range(n):

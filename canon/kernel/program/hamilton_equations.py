@@ -10,13 +10,15 @@ import sympy as sp
 
 from canon.cached_property import cached_property
 from canon.expression.graph.graph import Graph
-from canon.expression.graph.piecewise_form import without_pieces
+from canon.expression.symbols.repeated_sum import RepeatedSum, written_out
 from canon.frozen_mapping import FrozenMapping
-from canon.kernel.program.program import Program, exact_value, program
+from canon.kernel.program.program import Program, exact_value, program, with_numbers
+from canon.kernel.program.repeated.rates_in_loops import rates_in_loops
+from canon.kernel.program.repeated.repeated_terms import repeated_terms
 from canon.kernel.program.shared_products import with_shared_products
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from sympy import Expr, Symbol
 
@@ -24,8 +26,56 @@ if TYPE_CHECKING:
     from canon.kernel.program.lagrangian.momenta_and_forces import MomentaAndForces
     from canon.kernel.program.lie_poisson_parts import LiePoissonParts
     from canon.kernel.program.nonholonomic_system import NonholonomicSystem
+    from canon.kernel.program.repeated.rates_in_loops import RatesInLoops
+    from canon.kernel.program.repeated.repeated_terms import RepeatedTerms
 
-__all__ = ["HamiltonEquations", "equations", "exact_number", "exact_numbers"]
+__all__ = [
+    "EquationNodes",
+    "HamiltonEquations",
+    "RepeatedEquations",
+    "equations",
+    "exact_number",
+    "exact_numbers",
+]
+
+
+@dataclass(frozen=True, eq=False)
+class EquationNodes:
+    """Equations of motion on a graph.
+
+    Parameters
+    ----------
+    graph
+        The graph that holds the Hamiltonian and its gradient.
+    hamiltonian
+        The node of H.
+    velocity, force
+        The nodes of ∂H/∂p and of −∂H/∂q.
+    """
+
+    graph: Graph
+    hamiltonian: int
+    velocity: tuple[int, ...]
+    force: tuple[int, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class RepeatedEquations:
+    """Equations of motion of sums over many rows, written out on a graph for those who ask for that.
+
+    Parameters
+    ----------
+    sums
+        The sums that H consists of.
+    loops
+        Their rates as loops.
+    written_out
+        What writes them out.
+    """
+
+    sums: tuple[RepeatedTerms, ...]
+    loops: RatesInLoops
+    written_out: Callable[[], EquationNodes]
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,16 +84,12 @@ class HamiltonEquations:
 
     Parameters
     ----------
-    graph
-        The graph that holds the Hamiltonian and its gradient.
+    written
+        The Hamiltonian and its gradient: on a graph, or as sums over rows.
     q, p, t
         Coordinates, momenta and time.
     parameters
         The parameters' numbers by name.
-    hamiltonian
-        The node of H.
-    velocity, force
-        The nodes of ∂H/∂p and of −∂H/∂q.
     separable
         Whether H = T(p, t) + V(q, t): then drifts and kicks are exact flows.
     quadratic_kinetic
@@ -74,14 +120,11 @@ class HamiltonEquations:
         How many variations of the motion are part of the state, behind it in q and in p.
     """
 
-    graph: Graph
+    written: EquationNodes | RepeatedEquations
     q: tuple[Symbol, ...]
     p: tuple[Symbol, ...]
     t: Symbol
     parameters: Mapping[str, Fraction]
-    hamiltonian: int
-    velocity: tuple[int, ...]
-    force: tuple[int, ...]
     separable: bool
     quadratic_kinetic: bool
     autonomous: bool
@@ -95,6 +138,48 @@ class HamiltonEquations:
     lie_poisson: LiePoissonParts | None = None
     lagrangian: MomentaAndForces | None = None
     variations: int = 0
+
+    @cached_property
+    def nodes(self) -> EquationNodes:
+        """The Hamiltonian and its gradient on a graph; sums over rows are written out when this is first asked for."""
+        return self.written if isinstance(self.written, EquationNodes) else self.written.written_out()
+
+    @property
+    def sums(self) -> tuple[RepeatedTerms, ...]:
+        """The sums over rows that H consists of, where it is kept as such."""
+        return () if isinstance(self.written, EquationNodes) else self.written.sums
+
+    @property
+    def loops(self) -> RatesInLoops | None:
+        """The rates of those sums as loops."""
+        return None if isinstance(self.written, EquationNodes) else self.written.loops
+
+    @property
+    def graph(self) -> Graph:
+        """The graph that holds the Hamiltonian and its gradient."""
+        return self.nodes.graph
+
+    @property
+    def hamiltonian(self) -> int:
+        """The node of H."""
+        return self.nodes.hamiltonian
+
+    @property
+    def velocity(self) -> tuple[int, ...]:
+        """The nodes of ∂H/∂p."""
+        return self.nodes.velocity
+
+    @property
+    def force(self) -> tuple[int, ...]:
+        """The nodes of −∂H/∂q."""
+        return self.nodes.force
+
+    def moving_by(
+        self, velocity: Sequence[int], force: Sequence[int], hamiltonian: int | None = None
+    ) -> EquationNodes:
+        """Return other rates, and another H where one is given, on the same graph."""
+        energy = self.hamiltonian if hamiltonian is None else hamiltonian
+        return EquationNodes(self.graph, energy, tuple(velocity), tuple(force))
 
     @cached_property
     def rows(self) -> list[int]:
@@ -124,9 +209,9 @@ class HamiltonEquations:
     def node(self, expression: Expr, what: str) -> int:
         """Return the node of a function of (q, p, t) and the parameters; ``what`` names it in errors."""
         if not self.named:
-            return _with_numbers(self.graph, expression, self.inputs, self.parameters, what)
+            return with_numbers(self.graph, expression, self.inputs, self.parameters, what)
         both = (*self.inputs, *self.named)
-        node = _with_numbers(self.graph, expression, both, self.parameters, what)
+        node = with_numbers(self.graph, expression, both, self.parameters, what)
         known = {self.graph.symbol(symbol): value for symbol, value in self.named.items()}
         return self.graph.substitute([node], known)[0]
 
@@ -159,12 +244,46 @@ def equations(
     """
     q, p = tuple(q), tuple(p)
     varying = tuple(varying)
+    if hamiltonian.has(RepeatedSum):
+        kept = None if varying else _of_sums(hamiltonian, q, p, t, parameters)
+        if kept is not None:
+            return kept
+        hamiltonian = written_out(hamiltonian)
     made = _equations(hamiltonian, q, p, t, parameters, varying)
     if made.separable or not hamiltonian.is_polynomial(*q, *p):
         return made
     # (q + p)² − 2qp is separable only after multiplying out, which is cheap for polynomials.
     expanded = _equations(sp.expand(hamiltonian), q, p, t, parameters, varying)
     return expanded if expanded.separable else made
+
+
+def _of_sums(
+    hamiltonian: Expr,
+    q: tuple[Symbol, ...],
+    p: tuple[Symbol, ...],
+    t: Symbol,
+    parameters: Mapping[str, Fraction],
+) -> HamiltonEquations | None:
+    """Return the equations of H = T(p, t) + V(q, t) that consists of long sums over rows; None of any other."""
+    sums = repeated_terms(hamiltonian, q, p, t, parameters)
+    loops = sums and rates_in_loops(sums, t, len(q))
+    if sums is None or loops is None:
+        return None
+    kinetic = [each for each in sums if each.reads(len(q)) == {"p"}]
+
+    def nodes() -> EquationNodes:
+        return _equations(written_out(hamiltonian), q, p, t, parameters, ()).nodes
+
+    return HamiltonEquations(
+        RepeatedEquations(sums, loops, nodes),
+        q=q,
+        p=p,
+        t=t,
+        parameters=parameters,
+        separable=True,
+        quadratic_kinetic=all(each.is_quadratic for each in kinetic),
+        autonomous=not any(t in each.graph.symbols(each.node) for each in sums),
+    )
 
 
 def _equations(
@@ -176,7 +295,7 @@ def _equations(
     varying: tuple[Symbol, ...],
 ) -> HamiltonEquations:
     graph = Graph()
-    node = _with_numbers(graph, hamiltonian, (*q, *p, t, *varying), parameters, "the Hamiltonian")
+    node = with_numbers(graph, hamiltonian, (*q, *p, t, *varying), parameters, "the Hamiltonian")
     gradient = graph.gradient(node, (*q, *p))
     velocity = gradient[len(q) :]
     force = tuple(graph.negative(slope) for slope in gradient[: len(q)])
@@ -190,14 +309,11 @@ def _equations(
         velocity = (*graph.substitute(velocity, moved), *stays)
         force = (*force, *stays)
     return HamiltonEquations(
-        graph=graph,
+        EquationNodes(graph, node, tuple(velocity), tuple(force)),
         q=(*q, *varying),
         p=(*p, *twins),
         t=t,
         parameters=parameters,
-        hamiltonian=node,
-        velocity=tuple(velocity),
-        force=tuple(force),
         separable=separable,
         quadratic_kinetic=quadratic,
         autonomous=not _depends(graph, [node], [t]),
@@ -226,18 +342,6 @@ def _is_linear(
         for v in velocity
         for slope in graph.gradient(v, tuple(momenta & graph.symbols(v)))
     )
-
-
-def _with_numbers(
-    graph: Graph, expression: Expr, variables: Sequence[Symbol], parameters: Mapping[str, Fraction], what: str
-) -> int:
-    general = graph.from_sympy(without_pieces(expression))
-    others = graph.symbols(general) - set(variables)
-    unknown = sorted(symbol.name for symbol in others if symbol.name not in parameters)
-    if unknown:
-        raise KeyError(f"{what} holds {', '.join(unknown)}: give each a number, parameters={{symbol: value}}")
-    known = {graph.symbol(symbol): graph.number(parameters[symbol.name]) for symbol in others}
-    return graph.substitute([general], known)[0] if known else general
 
 
 def exact_number(value: Any, what: str) -> Fraction:

@@ -7,14 +7,22 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
     from canon.kernel.program.program import Program
 
-__all__ = ["LEAVES", "OperationFamily", "families_of", "has_stride", "operand_places"]
+__all__ = [
+    "LEAVES",
+    "Families",
+    "OperationFamily",
+    "families_of",
+    "families_of_program",
+    "has_stride",
+    "regular",
+]
 
-LEAVES = ("input", "time", "constant")
+LEAVES = ("input", "time", "constant", "numbers")
 """What is no operation on others."""
 
 
@@ -22,13 +30,49 @@ LEAVES = ("input", "time", "constant")
 class OperationFamily:
     """Operations of one kind on operands of the same families.
 
-    ``members`` are the registers they write; a member's place in the family's array is its position here.
+    ``members`` are the registers they write; a member's place in the family's array is its position here. A family of
+    ``numbers`` has one for each member.
     """
 
     operation: str
     value: Fraction | None
     operands: tuple[int, ...]
-    members: list[int] = field(default_factory=list[int])
+    members: list[int] | range = field(default_factory=list[int])
+    numbers: tuple[Fraction, ...] = ()
+
+
+@dataclass(frozen=True)
+class Families:
+    """A program as families of operations.
+
+    Parameters
+    ----------
+    families
+        The families, operands' before their users'.
+    places
+        By family and operand, where each member finds the operand in the operand's family.
+    outputs
+        By family that has outputs, their numbers, and which members they are.
+    """
+
+    families: Sequence[OperationFamily]
+    places: Sequence[Sequence[Sequence[int]]]
+    outputs: Mapping[int, tuple[Sequence[int], Sequence[int]]]
+
+
+def families_of_program(steps: Program) -> Families:
+    """Return a program as families of operations."""
+    families, location = families_of(steps)
+    found: dict[int, tuple[list[int], list[int]]] = {}
+    for i, register in enumerate(steps.outputs):
+        kind, place = location[register]
+        rows, places = found.setdefault(kind, ([], []))
+        rows.append(i)
+        places.append(place)
+    columns = [[regular(column) for column in own] for own in _operand_places(steps, families, location)]
+    return Families(
+        families, columns, {kind: (regular(a), regular(b)) for kind, (a, b) in sorted(found.items())}
+    )
 
 
 def families_of(steps: Program) -> tuple[list[OperationFamily], list[tuple[int, int]]]:
@@ -70,7 +114,7 @@ def _places(
     return place
 
 
-def operand_places(
+def _operand_places(
     steps: Program, families: Sequence[OperationFamily], location: Sequence[tuple[int, int]]
 ) -> list[list[list[int]]]:
     """Return, by family and operand, where each member finds the operand in the operand's family."""
@@ -87,6 +131,25 @@ def operand_places(
     return found
 
 
+def regular(places: Sequence[int]) -> Sequence[int]:
+    """Return places that follow each other by a positive stride as a range, and others as they are.
+
+    Examples
+    --------
+    >>> regular([1, 3, 5]), regular([1, 2, 4])
+    (range(1, 7, 2), [1, 2, 4])
+    """
+    if isinstance(places, range) or not places:
+        return places
+    first, stride = places[0], places[1] - places[0] if len(places) > 1 else 1
+    if stride < 1:
+        return places
+    found = range(first, first + stride * len(places), stride)
+    return found if list(places) == list(found) else places
+
+
 def has_stride(places: Sequence[int]) -> bool:
     """Return whether places follow each other by a stride."""
-    return len(places) < 3 or all(b - a == places[1] - places[0] for a, b in itertools.pairwise(places))
+    if isinstance(places, range) or len(places) < 3:
+        return True
+    return all(b - a == places[1] - places[0] for a, b in itertools.pairwise(places))

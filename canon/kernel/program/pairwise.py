@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import sympy as sp
 
 from canon.kernel.program.program import Program, exact_value, program
@@ -23,8 +24,9 @@ if TYPE_CHECKING:
 
     from canon.expression.graph.graph import Graph
     from canon.kernel.program.hamilton_equations import HamiltonEquations
+    from canon.kernel.program.repeated.repeated_terms import RepeatedTerms
 
-__all__ = ["PairForces", "pair_forces"]
+__all__ = ["PairForces", "forces_of_pair_sum", "pair_forces"]
 
 _FEWEST = 12
 """Fewer bodies are written out: then the compiler sees every pair, and computes it once."""
@@ -43,9 +45,11 @@ class PairForces:
     gradient
         −∂φ/∂x_i as a function of x_i and x_j.
     strengths
-        c_ij, symmetric, zero on the diagonal.
+        c_ij, symmetric, zero on the diagonal; none where φ has no factors but its own.
     rest
         The nodes of what the pairs leave of −∂H/∂q; none where that is nothing.
+    numbers
+        Numbers of the bodies that φ holds, such as masses: ∂φ/∂x_i is then a function of x_i, x_j, and theirs.
     """
 
     bodies: int
@@ -53,6 +57,7 @@ class PairForces:
     gradient: Program
     strengths: tuple[tuple[Fraction, ...], ...]
     rest: tuple[int, ...]
+    numbers: tuple[tuple[Fraction, ...], ...] = ()
 
 
 def pair_forces(system: HamiltonEquations) -> PairForces | None:
@@ -203,3 +208,28 @@ def _forces(
     others = [term for term in terms if term not in taken and graph.symbols(term) & coordinates]
     rest = tuple(graph.negative(slope) for slope in graph.gradient(graph.add(others), system.q))
     return PairForces(bodies, axes, gradient, tuple(map(tuple, strengths)), rest if others else ())
+
+
+def forces_of_pair_sum(whole: RepeatedTerms) -> PairForces | None:
+    """Return the forces of a sum over pairs of rows, or None where it is no symmetric function of bodies in order.
+
+    A row is a body: its coordinates, which follow each other in q body by body, and its numbers.
+    """
+    width, axes = len(whole.columns), len(whole.moving)
+    first, second = whole.slots[:width], whole.slots[width:]
+    here = {s: (body, k) for body, slots in enumerate((first, second)) for k, s in enumerate(slots)}
+    there = {s: (1 - body, k) for s, (body, k) in here.items()}
+    symbols = whole.graph.symbols(whole.node)
+    in_order = all(
+        np.array_equal(np.asarray(whole.columns[k]), np.arange(whole.count) * axes + i)
+        for i, k in enumerate(whole.moving)
+    )
+    if not in_order or not symbols <= here.keys():
+        return None
+    if _key(whole.graph, whole.node, here) != _key(whole.graph, whole.node, there):
+        return None
+    fixed = [k for k in range(width) if k not in whole.moving]
+    inputs = [slots[k] for own in (whole.moving, fixed) for slots in (first, second) for k in own]
+    pulls = [whole.graph.negative(slope) for slope in whole.slopes[:axes]]
+    numbers = tuple(tuple(whole.columns[k]) for k in fixed)
+    return PairForces(whole.count, axes, program(whole.graph, pulls, inputs), (), (), numbers)

@@ -14,15 +14,16 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from canon.expression.graph.number_systems import multiprecision
+from canon.expression.graph.piecewise_form import without_pieces
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from sympy import Symbol
+    from sympy import Expr, Symbol
 
     from canon.expression.graph.graph import Graph
 
-__all__ = ["Instruction", "Program", "exact_value", "interpret", "program"]
+__all__ = ["Instruction", "Program", "exact_value", "interpret", "program", "with_numbers"]
 
 _CONSTANT_DIGITS = 100
 
@@ -97,6 +98,25 @@ def program(graph: Graph, outputs: Sequence[int], inputs: Sequence[Symbol]) -> P
     lowering = _Lowering(graph, {symbol: index for index, symbol in enumerate(inputs)})
     results = lowering.run(outputs)
     return Program(tuple(inputs), tuple(lowering.instructions), tuple(results))
+
+
+def with_numbers(
+    graph: Graph, expression: Expr, variables: Sequence[Symbol], parameters: Mapping[str, Fraction], what: str
+) -> int:
+    """Return the node of an expression of some variables, with numbers for everything else.
+
+    Raises
+    ------
+    KeyError
+        It holds a symbol without a number; ``what`` says in the message what it is.
+    """
+    general = graph.from_sympy(without_pieces(expression))
+    others = graph.symbols(general) - set(variables)
+    unknown = sorted(symbol.name for symbol in others if symbol.name not in parameters)
+    if unknown:
+        raise KeyError(f"{what} holds {', '.join(unknown)}: give each a number, parameters={{symbol: value}}")
+    known = {graph.symbol(symbol): graph.number(parameters[symbol.name]) for symbol in others}
+    return graph.substitute([general], known)[0] if known else general
 
 
 def exact_value(graph: Graph, node: int) -> Fraction:

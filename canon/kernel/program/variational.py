@@ -78,7 +78,6 @@ def variational(system: HamiltonEquations, variations: int) -> HamiltonEquations
         system,
         q=tuple(q),
         p=tuple(p),
-        velocity=tuple(velocity),
-        force=tuple(force),
+        written=system.moving_by(velocity, force),
         variations=system.variations + variations,
     )

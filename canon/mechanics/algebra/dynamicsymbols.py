@@ -83,6 +83,14 @@ def needs_plain(symbols: Collection[Any], t: Symbol = time) -> bool:
     return bare != t and bare in symbols
 
 
+def _rate_named(name: str, coordinates: Mapping[str, Symbol]) -> Symbol | None:
+    """Return the rate of a coordinate that has this name; of thousands of coordinates few are asked for."""
+    of, _, what = name.rpartition("_")
+    if what not in ("dot", "ddot") or of not in coordinates:
+        return None
+    return (velocity if what == "dot" else acceleration)(coordinates[of])
+
+
 def plain(f: Any, q: Sequence[Symbol], t: Symbol = time) -> Expr:
     """Return an expression with canon's symbols for dynamicsymbols of these coordinates, their rates and the time.
 
@@ -111,6 +119,5 @@ def plain(f: Any, q: Sequence[Symbol], t: Symbol = time) -> Expr:
         clock: Any = g.args[0]
         clocks[clock] = t
         expression = without_dynamicsymbols(expression, {g: s}, clock)
-    rates: dict[str, Symbol] = {rate(s).name: rate(s) for s in q for rate in (velocity, acceleration)}
-    exact = {s: rates[s.name] for s in expression.atoms(Symbol) if s.name in rates}
+    exact = {s: rate for s in expression.atoms(Symbol) if (rate := _rate_named(s.name, named)) is not None}
     return exchanged(expression, {Symbol(t.name): t, **clocks, **exact})

@@ -94,7 +94,8 @@ class Hamiltonian:
             raise ValueError(
                 f"the variables {(*self.q, *self.p)} are not all different; each needs a symbol of its own"
             )
-        rates = sorted(s.name for s in self.H.free_symbols if isinstance(s, Rate) and s not in self.p)
+        momenta = {*self.p}
+        rates = sorted(s.name for s in self.H.free_symbols if isinstance(s, Rate) and s not in momenta)
         if rates:
             raise ValueError(
                 f"H holds {', '.join(rates)}, and is a function of coordinates and momenta; write it in "

@@ -1,0 +1,153 @@
+"""Sums of one term over many rows of arguments, kept as the term and the rows: a SymPy expression of a few nodes.
+
+A chain of 10,000 sites is two terms and a list of sites. Written out, SymPy, the expression graph and the compiler meet
+each of its 30,000 terms; kept as it is, each meets one. What knows nothing of such sums sees them written out.
+"""
+
+from __future__ import annotations
+
+import itertools
+from typing import TYPE_CHECKING, Any
+
+import sympy as sp
+from sympy import Expr, Tuple
+
+from canon.cached_property import cached_property
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from sympy import Symbol
+    from sympy.printing.printer import Printer
+
+__all__ = ["RepeatedSum", "written_out"]
+
+
+class RepeatedSum(Expr):
+    """Σ f(x₁, …, x_k) over rows of arguments, or Σ f(x, y) over every pair of rows.
+
+    Parameters
+    ----------
+    term
+        f, in the symbols that stand for its arguments, and parameters.
+    slots
+        Those symbols; over pairs first those of the first row, then those of the second.
+    columns
+        For each slot of a row its arguments, as many for each: row i is what stands at place i of all columns.
+    pairs
+        Whether the sum goes over pairs i < j of rows rather than over rows.
+
+    Examples
+    --------
+    >>> from sympy import Dummy, symbols
+    >>> a, b = Dummy("a"), Dummy("b")
+    >>> x = symbols("x0:3")
+    >>> chain = RepeatedSum((b - a)**2, [a, b], [x[:-1], x[1:]])
+    >>> written_out(chain)
+    (-x0 + x1)**2 + (-x1 + x2)**2
+    >>> chain.diff(x[0])
+    2*x0 - 2*x1
+    """
+
+    is_commutative = True
+
+    def __new__(
+        cls, term: Any, slots: Iterable[Any], columns: Iterable[Iterable[Any]], pairs: Any = sp.false
+    ) -> RepeatedSum:
+        """Return the sum; the arguments may be SymPy's own, as they come from an expression that is taken apart."""
+        rows = Tuple(*(column if isinstance(column, Tuple) else Tuple(*column) for column in columns))
+        return Expr.__new__(cls, sp.sympify(term), Tuple(*slots), rows, sp.true if pairs else sp.false)
+
+    @property
+    def term(self) -> Expr:
+        """The term f."""
+        return self.args[0]
+
+    @property
+    def slots(self) -> tuple[Symbol, ...]:
+        """The symbols of f that stand for its arguments."""
+        return self.args[1].args
+
+    @property
+    def columns(self) -> tuple[tuple[Expr, ...], ...]:
+        """The arguments by slot of a row."""
+        return tuple(column.args for column in self.args[2].args)
+
+    @property
+    def pairs(self) -> bool:
+        """Whether the sum goes over pairs of rows."""
+        return self.args[3] is sp.true
+
+    @property
+    def rows(self) -> list[tuple[Expr, ...]]:
+        """The rows of arguments."""
+        return list(zip(*self.columns, strict=True))
+
+    @property
+    def count(self) -> int:
+        """How many terms it has."""
+        rows = len(self.columns[0])
+        return rows * (rows - 1) // 2 if self.pairs else rows
+
+    @property
+    def arguments(self) -> Iterator[tuple[Expr, ...]]:
+        """The arguments of f, term by term."""
+        if not self.pairs:
+            return iter(self.rows)
+        return (first + second for first, second in itertools.combinations(self.rows, 2))
+
+    @cached_property
+    def free_symbols(self) -> set[Any]:
+        """The symbols of the sum; those that stand for arguments are none of them."""
+        held: set[Any] = self.term.free_symbols - {*self.slots}
+        return held.union(*(each.free_symbols for column in self.columns for each in column))
+
+    def doit(self, **_hints: Any) -> Expr:
+        """Return the sum written out."""
+        return sp.Add(*(self._at(self.term, row) for row in self.arguments))
+
+    def _at(self, f: Expr, row: Sequence[Expr]) -> Expr:
+        return f.xreplace(dict(zip(self.slots, row, strict=True)))
+
+    @cached_property
+    def _holding(self) -> dict[Any, list[int]]:
+        """The rows in which a symbol stands, by symbol."""
+        found: dict[Any, list[int]] = {}
+        for i, row in enumerate(self.rows):
+            for symbol in {s for each in row for s in each.free_symbols}:
+                found.setdefault(symbol, []).append(i)
+        return found
+
+    def _eval_derivative(self, s: Any) -> Expr:
+        inner = self.term.diff(s)
+        whole: list[Expr] = [] if inner == 0 else [self.func(inner, *self.args[1:])]
+        slopes = [self.term.diff(slot) for slot in self.slots]
+        for row in self._rows_with(s):
+            chained = zip(slopes, row, strict=True)
+            whole += [self._at(slope, row) * each.diff(s) for slope, each in chained if each.has(s)]
+        return sp.Add(*whole)
+
+    def _rows_with(self, s: Any) -> Iterator[tuple[Expr, ...]]:
+        """Return the arguments of the terms in which a symbol stands."""
+        rows, own = self.rows, self._holding.get(s, [])
+        if not self.pairs:
+            return (rows[i] for i in own)
+        held = {*own}
+        partners = ((i, j) for i in own for j in range(len(rows)) if j not in held or j > i)
+        return (rows[min(pair)] + rows[max(pair)] for pair in partners)
+
+    def _sympystr(self, printer: Printer) -> str:
+        count = len(self.rows)
+        what = f"pairs of {count} rows" if self.pairs else f"{count} rows"
+        return f"Sum({printer.doprint(self.term)} over {what} of {printer.doprint(self.args[1])})"
+
+    def _latex(self, printer: Printer) -> str:
+        count = len(self.rows)
+        index = rf"1 \le i < j \le {count}" if self.pairs else f"i = 1 \\ldots {count}"
+        return rf"\sum_{{{index}}} {printer.doprint(self.term)}"
+
+
+def written_out(expression: Expr) -> Expr:
+    """Return an expression with its repeated sums written out."""
+    found = expression.atoms(RepeatedSum)
+    return expression.xreplace({each: each.doit() for each in found}) if found else expression

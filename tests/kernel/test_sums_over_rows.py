@@ -1,0 +1,322 @@
+"""Sums over chains, pairs and lattices, kept as one term: they are what they are written out, and move as that does."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from canon import (
+    AccuracyWarning,
+    Gauss,
+    Hamiltonian,
+    Splitting,
+    Taylor,
+    coordinates,
+    flow_jacobian,
+    propagate,
+)
+from canon.expression.symbols.repeated_sum import RepeatedSum
+from canon.flow.checked_request import hamilton_equations_of
+from canon.mechanics import chain_sum, lattice_sum, pair_sum, row_sum, written_out
+
+SITES = 90
+
+
+def variables(n):
+    return sp.symbols(f"q0:{n}", real=True), sp.symbols(f"p0:{n}", real=True)
+
+
+def kinetic(p):
+    return row_sum(lambda p: p**2 / 2, p)
+
+
+def bond(a, b):
+    return (b - a) ** 2 / 2 + (b - a) ** 4 / 40
+
+
+def attraction(a, b):
+    *x, m = a
+    *y, M = b
+    return -m * M / sp.sqrt(1 + sum((u - v) ** 2 for u, v in zip(x, y, strict=True)))
+
+
+def fixed_ends(n):
+    q, p = variables(n)
+    return kinetic(p) + chain_sum(bond, [0, *q, 0]), q, p
+
+
+def ring(n):
+    q, p = variables(n)
+    return kinetic(p) + chain_sum(lambda a, b: sp.exp(a - b), [*q, q[0]]), q, p
+
+
+def masses_and_field(n):
+    q, p = variables(n)
+    m = [1 + sp.Rational(k % 5, 7) for k in range(n)]
+    pinned = row_sum(lambda x, k: k * x**2 / 2 + sp.cos(x), q, range(n))
+    return row_sum(lambda p, m: p**2 / (2 * m), p, m) + chain_sum(bond, q) + pinned + q[3] ** 4 / 4, q, p
+
+
+def second_neighbours(n):
+    q, p = variables(n)
+    return kinetic(p) + chain_sum(bond, q) + sp.Rational(1, 3) * row_sum(bond, q[:-2], q[2:]), q, p
+
+
+def plane(n):
+    side = 10
+    q, p = variables(side * side)
+    rows = [q[side * k : side * (k + 1)] for k in range(side)]
+    return kinetic(p) + lattice_sum(lambda a, b: 1 - sp.cos(a - b), rows, periodic=n > 90), q, p
+
+
+def driven(n):
+    q, p = variables(n)
+    t = sp.Symbol("t", real=True)
+    return kinetic(p) + chain_sum(bond, q) + row_sum(lambda x: x * sp.sin(2 * t), q), q, p
+
+
+def some_still(n):
+    q, p = variables(n)
+    return kinetic(p[:-3]) + chain_sum(bond, q[5:]), q, p
+
+
+def bodies(n):
+    x, p = [sp.symbols(f"x{k} y{k}", real=True) for k in range(n)], sp.symbols(f"p0:{2 * n}", real=True)
+    m = [1 + sp.Rational(k, n) for k in range(n)]
+    q = tuple(s for body in x for s in body)
+    kinetic = row_sum(lambda p, m: p**2 / (2 * m), p, [each for each in m for _ in range(2)])
+    return kinetic + pair_sum(attraction, [(*b, each) for b, each in zip(x, m, strict=True)]), q, p
+
+
+def bodies_in_a_trap(n):
+    H, q, p = bodies(n)
+    return H + row_sum(lambda x: x**2 / 50, q), q, p
+
+
+KEPT = [
+    fixed_ends,
+    ring,
+    masses_and_field,
+    second_neighbours,
+    plane,
+    driven,
+    some_still,
+    bodies,
+    bodies_in_a_trap,
+]
+
+
+def made(make, n=None):
+    n = n or (14 if make in (bodies, bodies_in_a_trap) else SITES)
+    H, q, p = make(n)
+    return Hamiltonian(H, q, p), Hamiltonian(written_out(H), q, p)
+
+
+def start(system):
+    n = len(system.q)
+    return np.concatenate(
+        [np.sin(np.arange(n)) + (0.5 * np.arange(n) if n < SITES else 0), np.cos(np.arange(n)) / 3]
+    )
+
+
+@pytest.mark.parametrize("make", KEPT)
+@pytest.mark.parametrize("precision", ["double", "compensated"])
+def test_a_sum_moves_as_it_does_written_out(make, precision):
+    kept, plain = made(make)
+    assert hamilton_equations_of(kept, {}).sums
+    how = {"method": Splitting("blanes-moan-6"), "step": 0.02, "samples": 4, "precision": precision}
+    one, other = (propagate(system, (0, 2), start(kept), **how) for system in (kept, plain))
+    np.testing.assert_allclose(one.y, other.y, rtol=0, atol=2e-12 * np.abs(other.y).max())
+    np.testing.assert_allclose(one.energies.values, other.energies.values, rtol=1e-15, atol=1e-14)
+    size = np.abs(other.energies.values).max()
+    np.testing.assert_allclose(one.energy_change, other.energy_change, rtol=1e-3, atol=1e-13 * size)
+
+
+@pytest.mark.parametrize("make", KEPT)
+def test_nothing_is_written_out_by_a_splitting(make, monkeypatch):
+    system, _ = made(make)
+    monkeypatch.setattr(RepeatedSum, "doit", lambda *_, **__: pytest.fail("written out"))
+    run = propagate(system, (0, 1), start(system), method=Splitting("verlet"), step=0.05, samples=5)
+    assert np.isfinite(run.energy_change).all()
+    assert "degrees of freedom" in str(run)
+
+
+@pytest.mark.parametrize("make", [masses_and_field, bodies_in_a_trap])
+def test_orbits_side_by_side_move_as_one_by_one(make):
+    system, _ = made(make)
+    y0 = np.stack([start(system) * factor for factor in (1, 0.9, 1.1, 0.8, 1.2)], axis=1)
+    how = {"method": Splitting("verlet"), "step": 0.05, "samples": 3}
+    together = propagate(system, (0, 1), y0, **how)
+    for k in range(5):
+        alone = propagate(system, (0, 1), y0[:, k], **how)
+        np.testing.assert_allclose(together.y[:, :, k], alone.y, rtol=1e-13, atol=1e-13)
+
+
+def test_a_step_is_symplectic_and_goes_back():
+    system, _ = made(masses_and_field, 70)
+    y0 = start(system)
+    how = {"method": Splitting("verlet"), "step": 0.05, "samples": 1}
+    there = propagate(system, (0, 1), y0, **how).y[:, -1]
+    back = propagate(system, (1, 0), there, **how).y[:, -1]
+    np.testing.assert_allclose(back, y0, rtol=0, atol=1e-11)
+    M, n = flow_jacobian(system, (0, 1), y0, method=Splitting("verlet"), step=0.05).final, 70
+    J = np.block([[np.zeros((n, n)), np.eye(n)], [-np.eye(n), np.zeros((n, n))]])
+    np.testing.assert_allclose(M.T @ J @ M, J, rtol=0, atol=1e-11)
+
+
+def test_every_other_method_sees_the_sum_written_out():
+    system, plain = made(fixed_ends, 70)
+    y0 = start(system)
+    for how in ({"method": Taylor()}, {"method": Gauss(4), "step": 0.1}):
+        one, other = (propagate(each, (0, 1), y0, samples=2, **how) for each in (system, plain))
+        assert np.array_equal(one.y, other.y)
+        assert np.abs(one.energy_change - other.energy_change).max() <= 2.0**-60 * other.energies.values[0]
+
+
+def test_observables_and_parameters_go_with_it():
+    q, p = variables(80)
+    k, m = sp.symbols("k m", positive=True)
+    H = row_sum(lambda p: p**2 / (2 * m), p) + chain_sum(lambda a, b: k * (b - a) ** 2 / 2, [0, *q, 0])
+    system, y0 = Hamiltonian(H, q, p), [1.0] + [0.0] * 159
+    how = {"method": Splitting("verlet"), "step": 0.1, "samples": 3, "observables": {"first": q[0] ** 2}}
+    run = propagate(system, (0, 3), y0, parameters={"k": 2, "m": 3}, **how)
+    other = propagate(Hamiltonian(written_out(H), q, p), (0, 3), y0, parameters={"k": 2, "m": 3}, **how)
+    np.testing.assert_allclose(run.observables["first"], other.observables["first"], rtol=1e-12)
+    with pytest.raises(KeyError, match="the Hamiltonian holds m: give each a number"):
+        propagate(system, (0, 3), y0, parameters={"k": 2}, **how)
+
+
+def test_the_normal_modes_of_a_long_chain_are_known():
+    n, mode = 200, 3
+    q, p = variables(n)
+    system = Hamiltonian(kinetic(p) + chain_sum(lambda a, b: (b - a) ** 2 / 2, [0, *q, 0]), q, p)
+    shape = np.sin(np.pi * mode * np.arange(1, n + 1) / (n + 1))
+    omega = 2 * np.sin(np.pi * mode / (2 * (n + 1)))
+    how = {"method": Splitting("blanes-moan-6"), "step": 0.1, "samples": 1}
+    end = propagate(system, (0, 50), np.concatenate([shape, np.zeros(n)]), **how).y[:, -1]
+    np.testing.assert_allclose(
+        end, np.concatenate([shape * np.cos(50 * omega), -omega * shape * np.sin(50 * omega)]), atol=1e-10
+    )
+
+
+def test_momentum_of_a_thousand_bodies_is_kept():
+    H, q, p = bodies(1000)
+    y0 = np.concatenate([np.random.default_rng(1).normal(size=2000) * 30, np.zeros(2000)])
+    run = propagate(Hamiltonian(H, q, p), (0, 0.1), y0, method=Splitting("verlet"), step=0.01, samples=1)
+    push = np.abs(run.y[2000:, -1]).sum()
+    assert push > 100
+    assert np.abs(run.y[2000::2, -1].sum()) < 1e-13 * push
+    assert abs(run.energy_change[-1]) < 1e-6 * abs(run.energies.values[0])
+
+
+@settings(max_examples=50, deadline=None)
+@given(
+    st.lists(st.tuples(st.integers(0, 5), st.integers(0, 5), st.integers(-3, 3)), min_size=1, max_size=30),
+    st.integers(0, 3),
+)
+def test_slopes_of_random_sums_are_those_of_the_sum_written_out(rows, which):
+    x = sp.symbols("x0:6")
+    term = (
+        lambda a, b, k: k * a * b,
+        lambda a, b, k: sp.sin(a - k * b),
+        lambda a, b, k: a,
+        lambda a, b, k: k * sp.exp(a + b),
+    )[which]
+    kept = row_sum(term, *zip(*((x[i], x[j], k) for i, j, k in rows), strict=True))
+    plain = written_out(kept)
+    for s in x:
+        assert sp.expand(kept.diff(s) - plain.diff(s)) == 0
+    assert kept.free_symbols <= {*x}
+
+
+def test_pairs_are_differentiated_as_they_are_written_out():
+    x, g = sp.symbols("x0:5"), sp.Symbol("g")
+    kept = pair_sum(lambda a, b: g * a[0] * a[1] * sp.sin(a[0] - 2 * b[0]), [(s, s**2) for s in x])
+    plain = written_out(kept)
+    assert len(plain.args) == kept.count == 10
+    for s in (*x, g):
+        assert sp.expand(written_out(kept.diff(s)) - plain.diff(s)) == 0
+
+
+def test_what_does_not_split_or_is_no_list_of_symbols_is_written_out():
+    q, p = variables(70)
+    mixed = row_sum(lambda q, p: q**2 * p**2, q, p)
+    inside = kinetic(p) + sp.sin(chain_sum(bond, q))
+    shifted = kinetic(p) + chain_sum(bond, [s + 1 for s in q])
+    hub = kinetic(p) + row_sum(bond, q[:1] * 69, q[1:])
+    kinked = kinetic(p) + row_sum(sp.Abs, q)
+    product = kinetic(p) * (1 + q[0] ** 2)
+    for H in (
+        mixed,
+        inside,
+        shifted,
+        hub,
+        kinked,
+        product,
+        pair_sum(lambda a, b: a[0] - b[0] ** 2, q) + kinetic(p),
+    ):
+        equations = hamilton_equations_of(Hamiltonian(H, q, p), {})
+        assert not equations.sums
+        assert len(equations.force) == 70
+    assert hamilton_equations_of(Hamiltonian(kinked, q, p), {}).separable
+    with pytest.warns(AccuracyWarning, match="steps over the kinks"):
+        propagate(Hamiltonian(kinked, q, p), (0, 1), [1.0] * 140, method=Splitting("verlet"), step=0.1)
+
+
+def test_a_kinetic_energy_that_is_not_quadratic_is_seen():
+    q, p = variables(70)
+    t = sp.Symbol("t", real=True)
+    for f, quadratic in (
+        (lambda p: p**2 / 2, True), (lambda p: p**4, False), (lambda p: p**2 * t, False), (lambda p: p * t, False)
+    ):  # fmt: skip
+        equations = hamilton_equations_of(Hamiltonian(row_sum(f, p) + chain_sum(bond, q), q, p), {})
+        plain = hamilton_equations_of(Hamiltonian(written_out(row_sum(f, p) + chain_sum(bond, q)), q, p), {})
+        assert equations.sums
+        for name in ("separable", "quadratic_kinetic", "autonomous"):
+            assert getattr(equations, name) is getattr(plain, name)
+        assert equations.quadratic_kinetic is quadratic
+
+
+def test_the_same_sum_written_again_is_the_same_expression():
+    q, p = variables(70)
+    assert chain_sum(bond, q) == chain_sum(bond, q)
+    assert hamilton_equations_of(Hamiltonian(fixed_ends(70)[0], q, p), {}) is hamilton_equations_of(
+        Hamiltonian(fixed_ends(70)[0], q, p), {}
+    )
+    assert str(chain_sum(bond, q[:3])).startswith("Sum(")
+    assert r"\sum_{i = 1 \ldots 2}" in sp.latex(chain_sum(bond, q[:3]))
+    assert r"i < j" in sp.latex(pair_sum(lambda a, b: a[0] * b[0], q[:3]))
+
+
+@pytest.mark.parametrize(
+    ("write", "error", "message"),
+    [
+        (lambda q: chain_sum(bond, q[:1]), ValueError, "a chain of 1 sites has no neighbours"),
+        (lambda q: chain_sum((q[0] - q[1]) ** 2, q), TypeError, "should be a function, such as lambda a, b"),
+        (lambda q: row_sum(bond, q[:3], q[:2]), ValueError, "columns of 3, 2 entries"),
+        (lambda q: row_sum(bond), ValueError, "no columns"),
+        (lambda q: row_sum(lambda x: [x], q), TypeError, "the term of the sum should be an expression"),
+        (lambda q: row_sum(lambda x: x, ["a"]), TypeError, "an argument of the sum should be an expression"),
+        (lambda q: pair_sum(attraction, [(q[0], 1)]), ValueError, "1 bodies make no pair"),
+        (lambda q: pair_sum(attraction, [(q[0], 1), (q[1],)]), ValueError, "more is given than of others"),
+        (lambda q: lattice_sum(bond, [[q[0]]]), ValueError, r"shape \(1, 1\) has no neighbours"),
+        (lambda q: lattice_sum(bond, [q[:2], q[:3]]), ValueError, "the rows of the lattice differ in length"),
+    ],
+)
+def test_what_is_no_sum_is_told(write, error, message):
+    with pytest.raises(error, match=message):
+        write(coordinates("q0:5"))
+
+
+def test_equations_with_other_rates_are_no_sums_any_more():
+    system = hamilton_equations_of(made(fixed_ends)[0], {})
+    moved = dataclasses.replace(system, written=system.moving_by(system.force, system.velocity))
+    assert system.sums
+    assert not moved.sums
+    assert moved.loops is None
+    assert moved.velocity == system.force
