@@ -18,7 +18,8 @@ from canon.flow.method.number_formats import FIXED
 from canon.flow.propagation import propagate
 from canon.kernel.loops import splitting
 from canon.kernel.program.hamilton_equations import HamiltonEquations, equations
-from canon.kernel.program.pairwise import PairForces, pair_forces
+from canon.kernel.program.pairwise import pair_forces
+from canon.kernel.program.repeated.pair_function import PairForces
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 
 BODIES = 13

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import threading
 
 import numpy as np
 import pytest
@@ -238,7 +239,7 @@ def test_pairs_are_differentiated_as_they_are_written_out():
     x, g = sp.symbols("x0:5"), sp.Symbol("g")
     kept = pair_sum(lambda a, b: g * a[0] * a[1] * sp.sin(a[0] - 2 * b[0]), [(s, s**2) for s in x])
     plain = written_out(kept)
-    assert len(plain.args) == kept.count == 10
+    assert len(plain.args) == kept.length == 10
     for s in (*x, g):
         assert sp.expand(written_out(kept.diff(s)) - plain.diff(s)) == 0
 
@@ -320,3 +321,21 @@ def test_equations_with_other_rates_are_no_sums_any_more():
     assert not moved.sums
     assert moved.loops is None
     assert moved.velocity == system.force
+
+
+def test_arrays_that_no_stack_holds_are_on_the_heap():
+    H, q, p = fixed_ends(3000)
+    system = Hamiltonian(H, q, p)
+    y0 = np.stack([start(system) * factor for factor in np.linspace(0.5, 1.5, 16)], axis=1)
+    how = {"method": Splitting("verlet"), "step": 0.05, "samples": 1, "precision": "compensated"}
+    found = []
+    before = threading.stack_size(256 * 1024)
+    try:
+        thread = threading.Thread(target=lambda: found.append(propagate(system, (0, 0.5), y0, **how)))
+        thread.start()
+    finally:
+        threading.stack_size(before)
+    thread.join()
+    for k in (0, 15):
+        alone = propagate(system, (0, 0.5), y0[:, k], **how)
+        np.testing.assert_allclose(found[0].y[:, :, k], alone.y, rtol=1e-13, atol=1e-13)

@@ -59,24 +59,29 @@ class RepeatedSum(Expr):
         return Expr.__new__(cls, sp.sympify(term), Tuple(*slots), rows, sp.true if pairs else sp.false)
 
     @property
+    def _given(self) -> tuple[Any, Any, Any, Any]:
+        term, slots, columns, pairs = self.args
+        return term, slots, columns, pairs
+
+    @property
     def term(self) -> Expr:
         """The term f."""
-        return self.args[0]
+        return self._given[0]
 
     @property
     def slots(self) -> tuple[Symbol, ...]:
         """The symbols of f that stand for its arguments."""
-        return self.args[1].args
+        return self._given[1].args
 
     @property
     def columns(self) -> tuple[tuple[Expr, ...], ...]:
         """The arguments by slot of a row."""
-        return tuple(column.args for column in self.args[2].args)
+        return tuple(column.args for column in self._given[2].args)
 
     @property
     def pairs(self) -> bool:
         """Whether the sum goes over pairs of rows."""
-        return self.args[3] is sp.true
+        return self._given[3] is sp.true
 
     @property
     def rows(self) -> list[tuple[Expr, ...]]:
@@ -84,7 +89,7 @@ class RepeatedSum(Expr):
         return list(zip(*self.columns, strict=True))
 
     @property
-    def count(self) -> int:
+    def length(self) -> int:
         """How many terms it has."""
         rows = len(self.columns[0])
         return rows * (rows - 1) // 2 if self.pairs else rows
@@ -96,10 +101,18 @@ class RepeatedSum(Expr):
             return iter(self.rows)
         return (first + second for first, second in itertools.combinations(self.rows, 2))
 
-    @cached_property
+    def of(self, term: Expr) -> RepeatedSum:
+        """Return the sum of another term over the same arguments."""
+        return RepeatedSum(term, *self._given[1:])
+
+    @property
     def free_symbols(self) -> set[Any]:
         """The symbols of the sum; those that stand for arguments are none of them."""
-        held: set[Any] = self.term.free_symbols - {*self.slots}
+        return set(self._held)
+
+    @cached_property
+    def _held(self) -> frozenset[Any]:
+        held: frozenset[Any] = frozenset(self.term.free_symbols) - {*self.slots}
         return held.union(*(each.free_symbols for column in self.columns for each in column))
 
     def doit(self, **_hints: Any) -> Expr:
@@ -107,7 +120,8 @@ class RepeatedSum(Expr):
         return sp.Add(*(self._at(self.term, row) for row in self.arguments))
 
     def _at(self, f: Expr, row: Sequence[Expr]) -> Expr:
-        return f.xreplace(dict(zip(self.slots, row, strict=True)))
+        placed: Any = f.xreplace(dict(zip(self.slots, row, strict=True)))
+        return placed
 
     @cached_property
     def _holding(self) -> dict[Any, list[int]]:
@@ -120,7 +134,7 @@ class RepeatedSum(Expr):
 
     def _eval_derivative(self, s: Any) -> Expr:
         inner = self.term.diff(s)
-        whole: list[Expr] = [] if inner == 0 else [self.func(inner, *self.args[1:])]
+        whole = list[Expr]() if inner == 0 else list[Expr]([self.of(inner)])
         slopes = [self.term.diff(slot) for slot in self.slots]
         for row in self._rows_with(s):
             chained = zip(slopes, row, strict=True)
@@ -150,4 +164,5 @@ class RepeatedSum(Expr):
 def written_out(expression: Expr) -> Expr:
     """Return an expression with its repeated sums written out."""
     found = expression.atoms(RepeatedSum)
-    return expression.xreplace({each: each.doit() for each in found}) if found else expression
+    plain: Any = expression.xreplace({each: each.doit() for each in found})
+    return plain

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 
 from canon.kernel.llvm.machine_code import MachineCode, compiled
 from canon.kernel.llvm.number_types import DOUBLE, MachineType
-from canon.kernel.llvm.writer import LIBRARY, Writer
+from canon.kernel.llvm.writer import HEAP, LIBRARY, Writer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Sequence
@@ -183,6 +183,7 @@ def compile_loop(w: Writer, n: int, *, compensated: bool, carry: int = 0) -> Loo
 
 def compiled_function(w: Writer, name: str, parameters: str, signature: Sequence[object]) -> MachineCode:
     """Compile what was written as one function."""
-    ir = "\n".join([*sorted(w.declarations), f"define void @{name}({parameters}) {{", w.body(), "}"])
-    called = [f"{function}{suffix}" for function in LIBRARY for suffix in ("", "f", "l")]
+    body = w.body()
+    ir = "\n".join([*sorted(w.declarations), f"define void @{name}({parameters}) {{", body, "}"])
+    called = [*(f"{function}{suffix}" for function in LIBRARY for suffix in ("", "f", "l")), *HEAP]
     return compiled(ir, name, signature, [function for function in called if f"@{function}(" in ir])

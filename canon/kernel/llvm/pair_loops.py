@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from canon.kernel.llvm.writer import Writer
-    from canon.kernel.program.pairwise import PairForces
+    from canon.kernel.program.repeated.pair_function import PairForces
 
 __all__ = ["write_pair_forces"]
 

@@ -18,17 +18,24 @@ if TYPE_CHECKING:
     from canon.kernel.llvm.number_types import MachineType
     from canon.kernel.program.program import Program
 
-__all__ = ["LIBRARY", "Writer"]
+__all__ = ["HEAP", "LIBRARY", "Writer"]
 
 _ALGEBRA = {"add": "fadd", "sub": "fsub", "mul": "fmul", "div": "fdiv"}
 
 _LONG = 128
+
+_STACK, _LARGE, _LINE = 256 * 1024, 4096, 64
+"""Bytes of a function's arrays that its stack has room for, also in a thread; of an array that is moved to the heap
+where together they are more; and of a cache line, where arrays begin."""
 
 LIBRARY = (
     "sin", "cos", "tan", "exp", "log", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh",
     "atanh", "atan2", "erf", "erfc", "pow",
 )  # fmt: skip
 """Functions that come from the platform's libm."""
+
+HEAP = ("malloc", "free")
+"""What gives and takes back memory for arrays that the stack has no room for."""
 
 
 class Writer:
@@ -45,6 +52,8 @@ class Writer:
         self.inlined = True
         """Whether double-double operations become part of the function that calls them."""
         self.reserved: list[str] = []
+        self._arrays: dict[int, tuple[str, int]] = {}
+        """The names of arrays and their bytes, by place in what is reserved."""
         self.lines: list[str] = []
         self.declarations: set[str] = set()
         self._names = itertools.count(1)
@@ -194,7 +203,28 @@ class Writer:
 
     def body(self) -> str:
         """Return what was written, as the inside of a function that returns nothing."""
-        return "\n".join(["entry:", *self.reserved, *self.lines, "  ret void"])
+        reserved, freed = self._heaped()
+        return "\n".join(["entry:", *reserved, *self.lines, *freed, "  ret void"])
+
+    def _heaped(self) -> tuple[list[str], list[str]]:
+        """Return what is reserved, large arrays on the heap where the stack has no room, and what frees them."""
+        if sum(size for _, size in self._arrays.values()) <= _STACK:
+            return self.reserved, []
+        self.declarations |= {
+            "declare noalias ptr @malloc(i64)", "declare void @free(ptr)", "declare ptr @llvm.ptrmask.p0.i64(ptr, i64)"
+        }  # fmt: skip
+        reserved, freed = list(self.reserved), list[str]()
+        for place, (name, size) in self._arrays.items():
+            if size >= _LARGE:
+                reserved[place] = "\n".join(
+                    (
+                        f"  {name}.given = call noalias ptr @malloc(i64 {size + _LINE})",
+                        f"  {name}.next = getelementptr inbounds i8, ptr {name}.given, i64 {_LINE}",
+                        f"  {name} = call ptr @llvm.ptrmask.p0.i64(ptr {name}.next, i64 {-_LINE})",
+                    )
+                )
+                freed.append(f"  call void @free(ptr {name}.given)")
+        return reserved, freed
 
     # lanes and choices ---------------------------------------------------------------------------
 
@@ -268,7 +298,11 @@ class Writer:
         """Reserve local memory for so many numbers."""
         # Arrays whose addresses differ by multiples of 4096 bytes delay each other: long ones are set apart.
         apart = 24 if length >= _LONG else 0
-        return self.reserve(f"[{length + apart} x {self.number.name}], align 64")
+        name = self.reserve(f"[{length + apart} x {self.number.name}], align {_LINE}")
+        kind = self.number
+        size = (length + apart) * kind.alignment * kind.lanes * (1 + kind.pair)
+        self._arrays[len(self.reserved) - 1] = name, size
+        return name
 
     def reserve(self, what: str) -> str:
         """Reserve local memory for what LLVM calls so, and return its address."""

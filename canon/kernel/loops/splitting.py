@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from typing import Protocol, TypeAlias
 
     from canon.kernel.program.hamilton_equations import HamiltonEquations
-    from canon.kernel.program.pairwise import PairForces
     from canon.kernel.program.program import Program
+    from canon.kernel.program.repeated.pair_function import PairForces
     from canon.kernel.program.repeated.rates_in_loops import RatesInLoops
 
     _Take: TypeAlias = Callable[[str, str], None]

@@ -266,7 +266,7 @@ def _of_sums(
 ) -> HamiltonEquations | None:
     """Return the equations of H = T(p, t) + V(q, t) that consists of long sums over rows; None of any other."""
     sums = repeated_terms(hamiltonian, q, p, t, parameters)
-    loops = sums and rates_in_loops(sums, t, len(q))
+    loops = None if sums is None else rates_in_loops(sums, t, len(q))
     if sums is None or loops is None:
         return None
     kinetic = [each for each in sums if each.reads(len(q)) == {"p"}]

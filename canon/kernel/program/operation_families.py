@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ class OperationFamily:
     operation: str
     value: Fraction | None
     operands: tuple[int, ...]
-    members: list[int] | range = field(default_factory=list[int])
+    members: Sequence[int]
     numbers: tuple[Fraction, ...] = ()
 
 
@@ -78,6 +78,7 @@ def families_of_program(steps: Program) -> Families:
 def families_of(steps: Program) -> tuple[list[OperationFamily], list[tuple[int, int]]]:
     """Return the families, operands' before their users', and each register's family and place in it."""
     found: list[OperationFamily] = []
+    members: list[list[int]] = []
     number: dict[Any, int] = {}
     family_of: list[int] = []
     operands_of: list[tuple[int, ...]] = []
@@ -90,26 +91,30 @@ def families_of(steps: Program) -> tuple[list[OperationFamily], list[tuple[int, 
         key = (operation, kinds, value if is_time else constant)
         if key not in number:
             number[key] = len(found)
-            found.append(OperationFamily("time" if is_time else operation, constant, kinds))
+            members.append([])
+            found.append(OperationFamily("time" if is_time else operation, constant, kinds, members[-1]))
         family_of.append(number[key])
         operands_of.append(operands)
-        found[number[key]].members.append(register)
-    return found, list(zip(family_of, _places(steps, found, operands_of), strict=True))
+        members[number[key]].append(register)
+    return found, list(zip(family_of, _places(steps, found, members, operands_of), strict=True))
 
 
 def _places(
-    steps: Program, families: Sequence[OperationFamily], operands_of: Sequence[tuple[int, ...]]
+    steps: Program,
+    families: Sequence[OperationFamily],
+    members: Sequence[list[int]],
+    operands_of: Sequence[tuple[int, ...]],
 ) -> list[int]:
     """Sort the members of families, and return each register's place; that of an input is its number."""
     place = [0] * len(operands_of)
-    for family in families:
+    for family, own in zip(families, members, strict=True):
         if family.operation == "input":
-            for register in family.members:
+            for register in own:
                 place[register] = int(steps.instructions[register].value)
             continue
         # In the order of their operands, members tend to read and to be read with a stride.
-        family.members.sort(key=lambda register: [place[o] for o in operands_of[register]])
-        for position, register in enumerate(family.members):
+        own.sort(key=lambda register: [place[o] for o in operands_of[register]])
+        for position, register in enumerate(own):
             place[register] = position
     return place
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from canon.kernel.program.pairwise import forces_of_pair_sum
+from canon.kernel.program.repeated.pair_function import forces_of_pair_sum
 from canon.kernel.program.repeated.repeated_families import MOST_ADDENDS, families_of_sums, most_addends
 
 if TYPE_CHECKING:
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from sympy import Symbol
 
     from canon.kernel.program.operation_families import Families
-    from canon.kernel.program.pairwise import PairForces
+    from canon.kernel.program.repeated.pair_function import PairForces
     from canon.kernel.program.repeated.repeated_terms import RepeatedTerms
 
 __all__ = ["RatesInLoops", "rates_in_loops"]

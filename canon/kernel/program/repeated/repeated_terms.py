@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import sympy as sp
+from sympy import Symbol
 
 from canon.cached_property import cached_property
 from canon.expression.graph.graph import Graph
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     import numpy.typing as npt
-    from sympy import Expr, Symbol
+    from sympy import Expr
 
 __all__ = ["Column", "RepeatedTerms", "repeated_terms"]
 
@@ -137,12 +138,12 @@ def _parts(hamiltonian: Expr) -> tuple[list[RepeatedSum], Expr] | None:
     for addend in sp.Add.make_args(hamiltonian):
         factor, rest = addend.as_independent(RepeatedSum, as_Add=False)
         if isinstance(rest, RepeatedSum):
-            sums.append(rest if factor == 1 else rest.func(factor * rest.term, *rest.args[1:]))
+            sums.append(rest if factor == 1 else rest.of(factor * rest.term))
         elif addend.has(RepeatedSum):
             return None
         else:
             single.append(addend)
-    return (sums, sp.Add(*single)) if any(each.count >= _FEWEST for each in sums) else None
+    return (sums, sp.Add(*single)) if any(each.length >= _FEWEST for each in sums) else None
 
 
 @dataclass(frozen=True)
@@ -175,7 +176,7 @@ class _Reader:
 
     def of_single(self, expression: Expr) -> RepeatedTerms:
         """Return what stands beside the sums, as a sum of one row."""
-        slots = tuple(sorted(expression.free_symbols & self.place.keys(), key=self.place.__getitem__))
+        slots = tuple(s for s in self.place if s in expression.free_symbols)
         graph = Graph()
         node = self._node(graph, expression, slots)
         return RepeatedTerms(graph, node, slots, tuple(np.array([self.place[s]]) for s in slots), pairs=False)
@@ -185,7 +186,7 @@ class _Reader:
 
     def _argument(self, argument: Expr, known: dict[Expr, Any]) -> Any:
         """Return the place of a variable or the value of a number; None of what is neither."""
-        if argument in self.place:
+        if isinstance(argument, Symbol) and argument in self.place:
             return self.place[argument]
         if argument not in known:
             known[argument] = None
