@@ -120,6 +120,7 @@ SUBJECTS = {
 
 RETURNED = {
     "expression": (
+        "expression.symbols.repeated_sum.RepeatedSum",
         "expression.symbols.symbol.Momentum",
         "expression.symbols.symbol.Rate",
         "expression.text.tokens.LanguageError",
