@@ -133,7 +133,7 @@ def course_with(
         raise ValueError(
             "observables: 'energy' is the Hamiltonian, which is always observed; take another name"
         )
-    nodes = [system.node(f, f"the observable {name!r}") for name, f in extra.items()]
+    observed = [system.observable(f, f"the observable {name!r}") for name, f in extra.items()]
     wanted, plan, frame = sampling(ends, request.samples, request.times), None, None
     if method.engine is FIXED_STEPS:
         plan = planned(wanted, request.step, method)
@@ -152,7 +152,7 @@ def course_with(
         wanted=wanted,
         plan=plan,
         names=tuple(extra),
-        nodes=tuple(nodes),
+        observed=tuple(observed),
         cadence=request.cadence,
         events=tuple(request.events),
         dense=request.dense,

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from canon.flow.run.event import Event
     from canon.flow.transformed.extended_hamiltonian import ExtendedSystem
     from canon.kernel.program.hamilton_equations import HamiltonEquations
+    from canon.kernel.program.repeated.repeated_terms import KeptFunction
 
 __all__ = ["Course"]
 
@@ -41,7 +42,7 @@ class Course:
         What to integrate, how, and in which numbers.
     ends, wanted, plan
         The first and the last time, when to keep the state, and the steps for that; None of a time-transformed method.
-    names, nodes
+    names, observed
         The observables; H, then they, on the system's graph.
     cadence, events, dense, max_step, fictitious
         As :class:`canon.flow.task.Task` has them.
@@ -54,7 +55,7 @@ class Course:
     wanted: Sampling
     plan: Plan | None
     names: tuple[str, ...]
-    nodes: tuple[int, ...]
+    observed: tuple[int | KeptFunction, ...]
     cadence: int | None
     events: tuple[Event, ...]
     dense: bool
@@ -94,7 +95,7 @@ class Course:
             single=single,
             plan=self.plan or fictitious_plan(self.wanted, named=named),
             names=self.names,
-            nodes=self.nodes,
+            observed=self.observed,
             cadence=self.cadence,
             events=self.events,
             dense=self.dense,

@@ -95,7 +95,7 @@ def _in_fixed_steps(
     if task.cadence is not None:
         watch = loop_observables(
             task.system,
-            (task.system.hamiltonian, *task.nodes),
+            (task.system.hamiltonian, *map(task.system.node_of, task.observed)),
             loop,
             task.states,
             task.plan.start,

@@ -43,11 +43,12 @@ from canon.flow.transformed.transformed_motion import RunState
 from canon.flow.transformed.transformed_orbit import StepEnd
 from canon.frozen_mapping import FrozenMapping
 from canon.kernel.heyoka_bridge import fraction_of, heyoka_number, is_heyoka_number
-from canon.kernel.program.hamilton_equations import HamiltonEquations
+from canon.kernel.program.hamilton_equations import EquationNodes, HamiltonEquations
 from canon.kernel.program.holonomic_system import HolonomicSystem
 from canon.kernel.program.lagrangian.momenta_and_forces import MomentaAndForces
 from canon.kernel.program.lie_poisson_parts import CommonTurn, LiePoissonParts, PlaneTurns, TurningBlock
 from canon.kernel.program.nonholonomic_system import NonholonomicSystem
+from canon.kernel.program.repeated.repeated_terms import KeptFunction, RepeatedTerms
 from canon.kernel.schemes.splitting_schemes import Scheme
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ _CLASSES: dict[str, Any] = {
         SolvableSplitting, WisdomHolman, SABA, SBAB, Scheme, ExtendedPhaseSpace, SemiexplicitSplitting, Rattle,
         HolonomicSystem, NonholonomicLeapfrog, NonholonomicSystem, LiePoissonSplitting, LiePoissonParts, PlaneTurns,
         CommonTurn, TurningBlock, Boris, MagneticSplitting, AverageVectorField,
-        GalerkinVariational, MomentaAndForces,
+        GalerkinVariational, MomentaAndForces, EquationNodes, KeptFunction, RepeatedTerms,
     )
 }  # fmt: skip
 
@@ -209,15 +210,28 @@ class _Reader:
     def _object(self, name: str, values: Any) -> Any:
         if name == "Graph":
             return graph_from(values, self.symbols)
-        kind = _CLASSES[name]
+        kind, former = _CLASSES[name], self._former(name, values)
         made = object.__new__(kind)
         for each in fields(kind):
+            if each.name in former:
+                object.__setattr__(made, each.name, former[each.name])
+                continue
             # Files written before a field was there do not hold it.
             value = (
                 self.of(values[each.name]) if each.name in values or each.default is MISSING else each.default
             )
             object.__setattr__(made, each.name, value)
         return made
+
+    def _former(self, name: str, values: Any) -> dict[str, Any]:
+        """Return fields that were others in files of canon before sums over rows."""
+        if name == "HamiltonEquations" and "written" not in values:
+            own = (self.of(values[each]) for each in ("graph", "hamiltonian", "velocity", "force"))
+            return {"written": EquationNodes(*own)}
+        if name == "Task" and "observed" not in values:
+            _energy, *observed = self.of(values["nodes"])
+            return {"observed": tuple(observed)}
+        return {}
 
 
 _READ: dict[str, Callable[[_Reader, Any], Any]] = {

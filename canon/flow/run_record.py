@@ -234,8 +234,8 @@ class RunRecord:
         if task.single and watched is not None:
             watched = watched[..., 0]
         extra = () if moving is None or moving.energy is None else (moving.energy,)
-        nodes = (*task.nodes, *extra)
-        (value, defect), *rest = measured_with_energy(task.system, nodes, found, task.precision_name)
+        observed = (*task.observed, *extra)
+        (value, defect), *rest = measured_with_energy(task.system, observed, found, task.precision_name)
         energy, change = rest.pop() if extra else (value, defect)
         names = ("energy", *task.names)
         statistics = (

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from canon.flow.run.sampling_plan import Plan
     from canon.flow.transformed.extended_hamiltonian import ExtendedSystem
     from canon.kernel.program.hamilton_equations import HamiltonEquations
+    from canon.kernel.program.repeated.repeated_terms import KeptFunction
 
 __all__ = ["Task"]
 
@@ -40,8 +41,8 @@ class Task:
         Whether one state was given rather than several.
     plan
         Steps and sample times.
-    names, nodes
-        The observables, on the system's graph.
+    names, observed
+        The observables, H aside: nodes of the system's graph, or sums where H is kept as such.
     cadence, events, dense
         As :func:`canon.flow.propagation.propagate` takes them.
     fictitious
@@ -57,7 +58,7 @@ class Task:
     single: bool
     plan: Plan
     names: tuple[str, ...]
-    nodes: tuple[int, ...]
+    observed: tuple[int | KeptFunction, ...]
     cadence: int | None
     events: tuple[Event, ...]
     dense: bool

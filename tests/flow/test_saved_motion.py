@@ -6,6 +6,7 @@ import json
 import subprocess
 import sys
 import zipfile
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -230,3 +231,15 @@ def test_numbers_of_64_bits_are_kept_as_sums_of_two_doubles_or_not_at_all():
     for power in (-400, 400):
         with pytest.raises(ValueError, match="beyond the range of doubles"):
             writer.of(np.array([np.longdouble(10) ** power]))
+
+
+def test_a_file_of_canon_before_sums_over_rows_is_read():
+    """It was written by commit 4ad42462: verlet, step 0.1, until t = 10, with q² as observable."""
+    before = load_motion(Path(__file__).parents[1] / "data/motions/pendulum_2026_11_26.npz")
+    q, p = sp.symbols("q p", real=True)
+    how = {"method": Splitting("verlet"), "step": 0.1, "observables": {"square": q**2}}
+    now = propagate(Hamiltonian(p**2 / 2 - sp.cos(q), q, p), (0, 10), [1, 0], samples=5, **how)
+    for one, other in ((before, now), (before.resume(until=20), now.resume(until=20))):
+        assert np.array_equal(one.y, other.y)
+        assert np.array_equal(one.energy_change, other.energy_change)
+        assert np.array_equal(one.observables["square"], other.observables["square"])

@@ -19,6 +19,7 @@ from canon import (
     Taylor,
     coordinates,
     flow_jacobian,
+    load_motion,
     propagate,
 )
 from canon.expression.symbols.repeated_sum import RepeatedSum
@@ -190,6 +191,50 @@ def test_observables_and_parameters_go_with_it():
     np.testing.assert_allclose(run.observables["first"], other.observables["first"], rtol=1e-12)
     with pytest.raises(KeyError, match="the Hamiltonian holds m: give each a number"):
         propagate(system, (0, 3), y0, parameters={"k": 2}, **how)
+
+
+def test_observables_of_a_kept_system_are_kept_too(monkeypatch):
+    H, q, p = masses_and_field(SITES)
+    t = sp.Symbol("t", real=True)
+    functions = {
+        "total": row_sum(lambda p: p, p),
+        "product": row_sum(lambda q, p: q * p, q, p) + q[3] * t + 7,
+        "pairs": pair_sum(lambda a, b: a[0] * b[0], q[:5]),
+        "one": sp.cos(q[0]) * p[1],
+        "seven": sp.Integer(7),
+    }
+    plain = {name: written_out(f) for name, f in functions.items()}
+    y0, kept = start(made(masses_and_field)[0]), Hamiltonian(H, q, p)
+    how = {"method": Splitting("verlet"), "step": 0.02, "samples": 3, "precision": "compensated"}
+    other = propagate(Hamiltonian(written_out(H), q, p), (0, 1), y0, observables=plain, **how)
+    with monkeypatch.context() as patched:
+        patched.setattr(RepeatedSum, "doit", lambda *_, **__: pytest.fail("written out"))
+        run = propagate(kept, (0, 1), y0, observables=functions, **how)
+        for name in functions:
+            np.testing.assert_allclose(run.observables[name], other.observables[name], rtol=1e-11, atol=1e-11)
+    inside = {"inside": sp.sin(row_sum(lambda p: p, p))}
+    run = propagate(kept, (0, 1), y0, observables=inside, **how)
+    np.testing.assert_allclose(run.observables["inside"], np.sin(other.observables["total"]), atol=1e-11)
+    wide = propagate(kept, (0, 1), y0, observables=functions, **(how | {"precision": "extended"}))
+    np.testing.assert_allclose(wide.observables["product"], other.observables["product"], rtol=1e-11)
+
+
+@pytest.mark.parametrize("make", [masses_and_field, bodies_in_a_trap])
+def test_what_was_saved_goes_on_bit_for_bit(make, tmp_path):
+    system, _ = made(make)
+    how = {
+        "method": Splitting("verlet"),
+        "step": 0.02,
+        "observables": {"total": row_sum(lambda p: p, system.p)},
+    }
+    run = propagate(system, (0, 1), start(system), samples=5, **how)
+    run.save(tmp_path / "motion.npz")
+    again = load_motion(tmp_path / "motion.npz")
+    assert again.record.task.system.sums
+    for one, other in ((run, again), (run.resume(until=2), again.resume(until=2))):
+        assert np.array_equal(one.y, other.y)
+        assert np.array_equal(one.energy_change, other.energy_change)
+        assert np.array_equal(one.observables["total"], other.observables["total"])
 
 
 def test_the_normal_modes_of_a_long_chain_are_known():

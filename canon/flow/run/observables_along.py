@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from canon.array import all_finite
 from canon.expression.graph.number_systems import FLOAT64, LONGDOUBLE, multiprecision
-from canon.flow.run.values_at_states import energy_of_sums, energy_terms, size_of_energy
+from canon.flow.run.values_at_states import energy_terms, size_of_energy, values_of_sums
 from canon.kernel.program.localised_terms import exponents_of
 from canon.kernel.quad_arithmetic import quad_array, quad_for
 
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from canon.flow.run.samples import Samples
     from canon.kernel.llvm.number_types import MachineType
     from canon.kernel.program.hamilton_equations import HamiltonEquations
+    from canon.kernel.program.repeated.repeated_terms import KeptFunction, RepeatedTerms
 
 __all__ = [
     "AccuracyWarning",
@@ -69,14 +70,23 @@ def measured(
 
 
 def measured_with_energy(
-    system: HamiltonEquations, nodes: Sequence[int], samples: Samples, precision: str
+    system: HamiltonEquations, observed: Sequence[int | KeptFunction], samples: Samples, precision: str
 ) -> list[tuple[Array, Array]]:
-    """Return the same of H and of each node; sums over rows are not written out where long doubles do for H."""
+    """Return the same of H and of each observable; sums over rows are not written out where long doubles do."""
     if not (system.sums and _in_long_doubles(precision)):
-        return measured(system, (system.hamiltonian, *nodes), samples, precision)
-    energy = energy_of_sums(system, samples.y.astype(np.longdouble) + samples.carried, samples.t)
-    others = measured(system, nodes, samples, precision) if nodes else []
-    return [(_rounded(energy), _rounded(energy - energy[:1])), *others]
+        return measured(system, (system.hamiltonian, *map(system.node_of, observed)), samples, precision)
+    state = samples.y.astype(np.longdouble) + samples.carried
+    nodes = [each for each in observed if isinstance(each, int)]
+    of_nodes = iter(measured(system, nodes, samples, precision) if nodes else [])
+
+    def of_sums(sums: Sequence[RepeatedTerms]) -> tuple[Array, Array]:
+        value = values_of_sums(system, sums, state, samples.t)
+        return _rounded(value), _rounded(value - value[:1])
+
+    return [
+        of_sums(system.sums),
+        *(next(of_nodes) if isinstance(each, int) else of_sums(each.sums) for each in observed),
+    ]
 
 
 def _rounding_of(precision: str) -> float:

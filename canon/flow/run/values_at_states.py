@@ -17,8 +17,9 @@ if TYPE_CHECKING:
     from canon.array import Array
     from canon.expression.graph.number_systems import Arithmetic
     from canon.kernel.program.hamilton_equations import HamiltonEquations
+    from canon.kernel.program.repeated.repeated_terms import RepeatedTerms
 
-__all__ = ["energy_and_rates", "energy_of_sums", "energy_terms", "size_of_energy"]
+__all__ = ["energy_and_rates", "energy_terms", "size_of_energy", "values_of_sums"]
 
 
 def energy_and_rates(
@@ -33,13 +34,13 @@ def energy_and_rates(
     return system.graph.evaluate((system.hamiltonian, *system.velocity, *system.force), values, arithmetic)
 
 
-def energy_of_sums(
-    system: HamiltonEquations, state: npt.NDArray[np.longdouble], t: Array
+def values_of_sums(
+    system: HamiltonEquations, sums: Sequence[RepeatedTerms], state: npt.NDArray[np.longdouble], t: Array
 ) -> npt.NDArray[np.longdouble]:
-    """Return H, kept as sums, at states of shape (2n, times, …) in long doubles."""
+    """Return what sums over rows add up to at states of shape (2n, times, …) in long doubles."""
     times = t.astype(np.longdouble).reshape((-1,) + (1,) * (state.ndim - 2))
     with LONGDOUBLE.quiet():
-        return value_of_sums(system.sums, system.t, state, times, LONGDOUBLE)
+        return value_of_sums(sums, system.t, state, times, LONGDOUBLE)
 
 
 def size_of_energy(system: HamiltonEquations, states: Array, t: Array) -> Array:

@@ -14,11 +14,11 @@ from canon.expression.symbols.repeated_sum import RepeatedSum, written_out
 from canon.frozen_mapping import FrozenMapping
 from canon.kernel.program.program import Program, exact_value, program, with_numbers
 from canon.kernel.program.repeated.rates_in_loops import rates_in_loops
-from canon.kernel.program.repeated.repeated_terms import repeated_terms
+from canon.kernel.program.repeated.repeated_terms import KeptFunction, repeated_terms, sums_in
 from canon.kernel.program.shared_products import with_shared_products
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from sympy import Expr, Symbol
 
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 __all__ = [
     "EquationNodes",
     "HamiltonEquations",
-    "RepeatedEquations",
     "equations",
     "exact_number",
     "exact_numbers",
@@ -60,32 +59,13 @@ class EquationNodes:
 
 
 @dataclass(frozen=True, eq=False)
-class RepeatedEquations:
-    """Equations of motion of sums over many rows, written out on a graph for those who ask for that.
-
-    Parameters
-    ----------
-    sums
-        The sums that H consists of.
-    loops
-        Their rates as loops.
-    written_out
-        What writes them out.
-    """
-
-    sums: tuple[RepeatedTerms, ...]
-    loops: RatesInLoops
-    written_out: Callable[[], EquationNodes]
-
-
-@dataclass(frozen=True, eq=False)
 class HamiltonEquations:
     """Hamilton's equations of one Hamiltonian with numbers for its parameters.
 
     Parameters
     ----------
     written
-        The Hamiltonian and its gradient: on a graph, or as sums over rows.
+        The Hamiltonian and its gradient on a graph, or the sums over rows that the Hamiltonian consists of.
     q, p, t
         Coordinates, momenta and time.
     parameters
@@ -120,7 +100,7 @@ class HamiltonEquations:
         How many variations of the motion are part of the state, behind it in q and in p.
     """
 
-    written: EquationNodes | RepeatedEquations
+    written: EquationNodes | tuple[RepeatedTerms, ...]
     q: tuple[Symbol, ...]
     p: tuple[Symbol, ...]
     t: Symbol
@@ -142,17 +122,20 @@ class HamiltonEquations:
     @cached_property
     def nodes(self) -> EquationNodes:
         """The Hamiltonian and its gradient on a graph; sums over rows are written out when this is first asked for."""
-        return self.written if isinstance(self.written, EquationNodes) else self.written.written_out()
+        if isinstance(self.written, EquationNodes):
+            return self.written
+        whole = KeptFunction(self.written).written_out((*self.q, *self.p))
+        return _equations(whole, self.q, self.p, self.t, self.parameters, ()).nodes
 
     @property
     def sums(self) -> tuple[RepeatedTerms, ...]:
         """The sums over rows that H consists of, where it is kept as such."""
-        return () if isinstance(self.written, EquationNodes) else self.written.sums
+        return () if isinstance(self.written, EquationNodes) else self.written
 
-    @property
+    @cached_property
     def loops(self) -> RatesInLoops | None:
         """The rates of those sums as loops."""
-        return None if isinstance(self.written, EquationNodes) else self.written.loops
+        return rates_in_loops(self.sums, self.t, len(self.q)) if self.sums else None
 
     @property
     def graph(self) -> Graph:
@@ -205,6 +188,20 @@ class HamiltonEquations:
     def program(self, nodes: Sequence[int]) -> Program:
         """Return the program of some nodes, a function of (q, p, t)."""
         return program(self.graph, nodes, self.inputs)
+
+    def observable(self, expression: Expr, what: str) -> int | KeptFunction:
+        """Return a function of (q, p, t) as it is measured: its node, or, where H is kept as sums, its sums."""
+        if self.sums:
+            sums = sums_in(expression, (*self.q, *self.p), self.t, self.parameters, what)
+            if sums is not None:
+                return KeptFunction(sums)
+        return self.node(written_out(expression), what)
+
+    def node_of(self, observable: int | KeptFunction) -> int:
+        """Return the node of what :meth:`observable` returned."""
+        if isinstance(observable, int):
+            return observable
+        return self.node(observable.written_out((*self.q, *self.p)), "the observable")
 
     def node(self, expression: Expr, what: str) -> int:
         """Return the node of a function of (q, p, t) and the parameters; ``what`` names it in errors."""
@@ -266,16 +263,11 @@ def _of_sums(
 ) -> HamiltonEquations | None:
     """Return the equations of H = T(p, t) + V(q, t) that consists of long sums over rows; None of any other."""
     sums = repeated_terms(hamiltonian, q, p, t, parameters)
-    loops = None if sums is None else rates_in_loops(sums, t, len(q))
-    if sums is None or loops is None:
+    if sums is None:
         return None
     kinetic = [each for each in sums if each.reads(len(q)) == {"p"}]
-
-    def nodes() -> EquationNodes:
-        return _equations(written_out(hamiltonian), q, p, t, parameters, ()).nodes
-
-    return HamiltonEquations(
-        RepeatedEquations(sums, loops, nodes),
+    made = HamiltonEquations(
+        sums,
         q=q,
         p=p,
         t=t,
@@ -284,6 +276,7 @@ def _of_sums(
         quadratic_kinetic=all(each.is_quadratic for each in kinetic),
         autonomous=not any(t in each.graph.symbols(each.node) for each in sums),
     )
+    return None if made.loops is None else made
 
 
 def _equations(

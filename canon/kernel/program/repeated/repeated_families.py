@@ -42,6 +42,8 @@ class _Addends(NamedTuple):
 def most_addends(sums: Sequence[RepeatedTerms]) -> int:
     """Return how many slopes the component of a rate adds up that adds up most."""
     places = [np.asarray(each.columns[k]) for each in sums for k in each.moving]
+    if not places:
+        return 0
     return int(np.unique(np.concatenate(places), return_counts=True)[1].max())
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from sympy import Expr
 
-__all__ = ["Column", "RepeatedTerms", "repeated_terms"]
+__all__ = ["Column", "KeptFunction", "RepeatedTerms", "repeated_terms", "sums_in"]
 
 _FEWEST = 64
 """Sums of fewer terms are written out: then the compiler sees every term."""
@@ -60,8 +60,13 @@ class RepeatedTerms:
 
     @property
     def count(self) -> int:
-        """The number of rows."""
-        return len(self.columns[0])
+        """The number of rows; a constant has one."""
+        return len(self.columns[0]) if self.columns else 1
+
+    @property
+    def is_single(self) -> bool:
+        """Whether it is a single term."""
+        return not self.columns or (self.count == 1 and not self.pairs)
 
     @property
     def size(self) -> int:
@@ -92,10 +97,38 @@ class RepeatedTerms:
             for slope in self.slopes
         )
 
+    def written_out(self, variables: Sequence[Symbol]) -> Expr:
+        """Return the sum as SymPy writes it, given the symbols of the state in order."""
+        columns = [
+            [sp.Rational(x.numerator, x.denominator) for x in column]
+            if isinstance(column, tuple)
+            else [variables[k] for k in column.tolist()]
+            for column in self.columns
+        ]
+        term = self.graph.to_sympy(self.node)
+        return RepeatedSum(term, self.slots, columns, self.pairs).doit() if columns else term
+
     def reads(self, n: int) -> set[str]:
         """Return whether q, p or both are read, of states (q, p) of n coordinates."""
         places = [self.columns[k] for k in self.moving]
         return {"p" if place >= n else "q" for column in places for place in np.asarray(column).tolist()}
+
+
+@dataclass(frozen=True, eq=False)
+class KeptFunction:
+    """A function of the state as sums over rows.
+
+    Parameters
+    ----------
+    sums
+        The sums that it consists of.
+    """
+
+    sums: tuple[RepeatedTerms, ...]
+
+    def written_out(self, variables: Sequence[Symbol]) -> Expr:
+        """Return the function as SymPy writes it, given the symbols of the state in order."""
+        return sp.Add(*(each.written_out(variables) for each in self.sums))
 
 
 def repeated_terms(
@@ -112,38 +145,49 @@ def repeated_terms(
     KeyError
         A symbol of H is neither a coordinate, a momentum, the time nor a given parameter.
     """
-    parts = _parts(hamiltonian)
-    if parts is None:
+    if not any(each.length >= _FEWEST for each in hamiltonian.atoms(RepeatedSum)):
         return None
-    sums, single = parts
-    reader = _Reader({s: i for i, s in enumerate((*q, *p))}, t, parameters)
-    found: list[RepeatedTerms] = []
-    for each in sums:
-        read = reader.of_sum(each)
-        if read is None:
-            return None
-        found += read
-    if single != 0:
-        found.append(reader.of_single(single))
-        if found[-1].size > _SINGLE:
-            return None
+    found = sums_in(hamiltonian, (*q, *p), t, parameters, "the Hamiltonian")
+    if found is None or any(each.is_single and each.size > _SINGLE for each in found):
+        return None
     kinds = {each.graph.nodes[k].kind for each in found for k in each.graph.reachable([each.node])}
-    return None if kinds.intersection(_KINKED) else tuple(found)
+    return None if kinds.intersection(_KINKED) else found
 
 
-def _parts(hamiltonian: Expr) -> tuple[list[RepeatedSum], Expr] | None:
-    """Return the sums that a Hamiltonian adds up, some of them long, and the rest of it, which holds none."""
-    sums: list[RepeatedSum] = []
+def sums_in(
+    function: Expr, variables: Sequence[Symbol], t: Symbol, parameters: Mapping[str, Fraction], what: str
+) -> tuple[RepeatedTerms, ...] | None:
+    """Return the sums that a function of the state consists of, or None where sums stand inside other functions.
+
+    Parameters
+    ----------
+    function, variables, t
+        The function, the symbols of the state in order, and that of the time.
+    parameters
+        Numbers for all other symbols, by name.
+    what
+        What the function is called in errors.
+
+    Raises
+    ------
+    KeyError
+        A symbol has no number.
+    """
+    reader = _Reader({s: i for i, s in enumerate(variables)}, t, parameters, what)
+    found: list[RepeatedTerms] = []
     single: list[Expr] = []
-    for addend in sp.Add.make_args(hamiltonian):
+    for addend in sp.Add.make_args(function):
         factor, rest = addend.as_independent(RepeatedSum, as_Add=False)
         if isinstance(rest, RepeatedSum):
-            sums.append(rest if factor == 1 else rest.of(factor * rest.term))
+            read = reader.of_sum(rest if factor == 1 else rest.of(factor * rest.term))
+            if read is None:
+                return None
+            found += read
         elif addend.has(RepeatedSum):
             return None
         else:
             single.append(addend)
-    return (sums, sp.Add(*single)) if any(each.length >= _FEWEST for each in sums) else None
+    return (*found, reader.of_single(sp.Add(*single))) if single else tuple(found)
 
 
 @dataclass(frozen=True)
@@ -153,6 +197,7 @@ class _Reader:
     place: Mapping[Symbol, int]
     t: Symbol
     parameters: Mapping[str, Fraction]
+    what: str
 
     def of_sum(self, whole: RepeatedSum) -> list[RepeatedTerms] | None:
         """Return a sum as sums whose columns are all places or all numbers, or None where its arguments are other."""
@@ -182,7 +227,7 @@ class _Reader:
         return RepeatedTerms(graph, node, slots, tuple(np.array([self.place[s]]) for s in slots), pairs=False)
 
     def _node(self, graph: Graph, expression: Expr, slots: Sequence[Symbol]) -> int:
-        return with_numbers(graph, expression, (*slots, self.t), self.parameters, "the Hamiltonian")
+        return with_numbers(graph, expression, (*slots, self.t), self.parameters, self.what)
 
     def _argument(self, argument: Expr, known: dict[Expr, Any]) -> Any:
         """Return the place of a variable or the value of a number; None of what is neither."""

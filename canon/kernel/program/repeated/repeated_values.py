@@ -82,19 +82,22 @@ def _parts(
     nodes = sums.slopes if slopes else (sums.node,)
     for places, arguments in _taken(sums, state, arithmetic):
         known = {t: time, **dict(zip(sums.slots, arguments, strict=True))}
-        shape = (len(arguments[0]), *state.shape[1:])
+        shape = (len(arguments[0]) if arguments else 1, *state.shape[1:])
         found = sums.graph.evaluate(nodes, known, arithmetic)
         wide = [np.broadcast_to(np.asarray(value, dtype=state.dtype), shape) for value in found]
         if slopes:
             yield from zip(places, wide, strict=True)
         else:
-            yield places[0], wide[0]
+            yield np.empty(0), wide[0]
 
 
 def _taken(
     sums: RepeatedTerms, state: _Numbers, arithmetic: Arithmetic
 ) -> Iterator[tuple[list[_Numbers], list[_Numbers]]]:
     """Yield the places of a term's arguments that are variables, and all its arguments, for some rows after others."""
+    if not sums.columns:
+        yield [], []
+        return
     if not sums.pairs:
         rows = max(1, _AT_ONCE // max(1, state[0].size))
         for start in range(0, sums.count, rows):
