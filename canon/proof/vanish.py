@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 
+from canon.expression.symbols.repeated_sum import written_out
 from canon.expression.symbols.user_input import given_expression, given_seconds
 from canon.proof.definedness.definedness import lack_beside, lack_of_value, may_lack
 from canon.proof.domain.domain import EVERYWHERE, Domain, as_domain
@@ -88,7 +89,7 @@ def vanishes(expr: Expr | sp.MatrixBase, domain: Domain = EVERYWHERE, budget: fl
     start, domain, budget = time.monotonic(), as_domain(domain), given_seconds(budget)
     if isinstance(expr, sp.MatrixBase):
         return _matrix_vanishes(expr, domain, start, budget).about("the matrix is zero")
-    verdict = _decide(expr, sp.Integer(0), domain, start + budget, ALONE)
+    verdict = _decide(written_out(expr), sp.Integer(0), domain, start + budget, ALONE)
     return replace(verdict, question="the expression is zero", seconds=time.monotonic() - start)
 
 
@@ -138,7 +139,8 @@ def equal(
             pairs = zip(cast("list[Expr]", a.flat()), cast("list[Expr]", b.flat()), strict=True)
             verdict = _entries_with_values(verdict, dict.fromkeys(pairs), domain, start + budget)
         return verdict.about("the matrices are equal")
-    verdict = _decide(a, b, domain, start + budget, SIDES)
+    left, right = (each if isinstance(each, sp.MatrixBase) else written_out(each) for each in (a, b))
+    verdict = _decide(left, right, domain, start + budget, SIDES)
     return replace(verdict, question="the expressions are equal", seconds=time.monotonic() - start)
 
 

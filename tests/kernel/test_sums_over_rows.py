@@ -13,14 +13,19 @@ from hypothesis import strategies as st
 
 from canon import (
     AccuracyWarning,
+    Event,
     Gauss,
     Hamiltonian,
+    Lagrangian,
     Splitting,
     Taylor,
     coordinates,
+    equal,
     flow_jacobian,
+    is_constant_of_motion,
     load_motion,
     propagate,
+    vanishes,
 )
 from canon.expression.symbols.repeated_sum import RepeatedSum
 from canon.flow.checked_request import hamilton_equations_of
@@ -199,7 +204,7 @@ def test_observables_of_a_kept_system_are_kept_too(monkeypatch):
     functions = {
         "total": row_sum(lambda p: p, p),
         "product": row_sum(lambda q, p: q * p, q, p) + q[3] * t + 7,
-        "pairs": pair_sum(lambda a, b: a[0] * b[0], q[:5]),
+        "pairs": pair_sum(lambda a, b: a * b, q[:5]),
         "one": sp.cos(q[0]) * p[1],
         "seven": sp.Integer(7),
     }
@@ -304,7 +309,7 @@ def test_what_does_not_split_or_is_no_list_of_symbols_is_written_out():
         hub,
         kinked,
         product,
-        pair_sum(lambda a, b: a[0] - b[0] ** 2, q) + kinetic(p),
+        pair_sum(lambda a, b: a - b**2, q) + kinetic(p),
     ):
         equations = hamilton_equations_of(Hamiltonian(H, q, p), {})
         assert not equations.sums
@@ -336,7 +341,7 @@ def test_the_same_sum_written_again_is_the_same_expression():
     )
     assert str(chain_sum(bond, q[:3])).startswith("Sum(")
     assert r"\sum_{i = 1 \ldots 2}" in sp.latex(chain_sum(bond, q[:3]))
-    assert r"i < j" in sp.latex(pair_sum(lambda a, b: a[0] * b[0], q[:3]))
+    assert r"i < j" in sp.latex(pair_sum(lambda a, b: a * b, q[:3]))
 
 
 @pytest.mark.parametrize(
@@ -384,3 +389,74 @@ def test_arrays_that_no_stack_holds_are_on_the_heap():
     for k in (0, 15):
         alone = propagate(system, (0, 0.5), y0[:, k], **how)
         np.testing.assert_allclose(found[0].y[:, :, k], alone.y, rtol=1e-13, atol=1e-13)
+
+
+def test_bodies_that_have_but_a_part_of_the_coordinates_are_written_out():
+    q, p = variables(25)
+    E = (
+        kinetic(p)
+        + pair_sum(lambda a, b: -1 / sp.sqrt(1 + (a[0] - b[0]) ** 2), [(x, 1) for x in q[:24]])
+        + q[24] ** 2 / 2
+    )
+    y0 = np.r_[np.linspace(-1, 1, 25), np.zeros(25)]
+    how = {"method": Splitting("blanes-moan-6"), "step": 0.05, "samples": 1}
+    end = propagate(Hamiltonian(E, q, p), (0, 1), y0, **how).q[24, -1]
+    assert end == pytest.approx(np.cos(1), abs=1e-7)
+
+
+def test_sums_in_sums_have_arguments_of_their_own():
+    q, p = variables(3)
+    nested = row_sum(lambda x: row_sum(lambda w: w * x, [1, 2, 3]), q)
+    assert sp.expand(written_out(nested) - 6 * sum(q)) == 0
+    assert [written_out(nested.diff(s)) for s in q] == [6, 6, 6]
+    inner = row_sum(lambda w: w * q[0], [1, 2, 3])
+    held = row_sum(lambda x: x * inner, [q[1], q[2]])
+    assert sp.expand(written_out(held) - 6 * q[0] * (q[1] + q[2])) == 0
+    assert sp.expand(written_out(held.diff(q[0])) - 6 * (q[1] + q[2])) == 0
+    k = sp.Symbol("k")
+    put_in = row_sum(lambda x: k * x**2, q).subs(k, row_sum(lambda w: w, [1, 2, 3]))
+    assert sp.expand(written_out(put_in) - 6 * sum(s**2 for s in q)) == 0
+    H = Hamiltonian(kinetic(p) + row_sum(lambda x: row_sum(lambda w: w * x**2 / 2, [1, 2, 3]), q), q, p)
+    assert H.p_dot == tuple(-6 * s for s in q)
+    assert is_constant_of_motion(p[0], H).fails
+    many, momenta = variables(80)
+    deep = kinetic(momenta) + row_sum(lambda x: row_sum(lambda w: w * x**2 / 2, [1, 2, 3]), many)
+    system, y0 = Hamiltonian(deep, many, momenta), [1.0] * 80 + [0.0] * 80
+    end = propagate(system, (0, 1), y0, method=Splitting("blanes-moan-6"), step=0.01, samples=1).y[7, -1]
+    assert end == pytest.approx(np.cos(np.sqrt(6)), abs=1e-10)
+
+
+def test_columns_that_the_term_does_not_hold_are_none_of_it():
+    q, _ = variables(3)
+    k = sp.Symbol("k")
+    assert row_sum(lambda x, _: x**2, q, [k, 2 * k, 3 * k]).free_symbols == {*q}
+    assert row_sum(lambda _: k, q) == 3 * k
+    assert pair_sum(lambda *_: k, q) == 3 * k
+
+
+def test_what_takes_sums_apart_sees_them_written_out():
+    q, p = variables(4)
+    C = chain_sum(bond, q)
+    plain = written_out(C)
+    assert equal(C, plain).holds
+    assert vanishes(C - plain).holds
+    assert equal(C, 2 * plain).fails
+    assert Hamiltonian(kinetic(p) + C, q, p).H.atoms(RepeatedSum) == set()
+    assert C.is_polynomial(*q)
+    assert float(chain_sum(bond, [1, 2, 4])) == pytest.approx(0.5 + 1 / 40 + 2 + 16 / 40)
+    assert sp.lambdify(q, C)(1, 2, 4, 4) == pytest.approx(0.5 + 1 / 40 + 2 + 16 / 40)
+    long, momenta = variables(70)
+    speeds = [sp.Symbol(f"{s}_dot", real=True) for s in long]
+    springs = chain_sum(lambda a, b: (b - a) ** 2 / 2, long)
+    L = Lagrangian(row_sum(lambda v: v**2 / 2, speeds) - springs, long)
+    assert not L.L.has(RepeatedSum)
+    H = Hamiltonian(kinetic(momenta) + springs, long, momenta)
+    met = Event(row_sum(lambda x: x, long) - 1)
+    y0 = [0.0] * 70 + [1.0] * 70
+    run = propagate(H, (0, 1), y0, method=Taylor(), events=[met])
+    assert run.events[0].t == pytest.approx(1 / 70)
+    shown = sp.latex(C**2)
+    assert r"\left(\sum_{i = 1 \ldots 3} \left(" in shown
+    assert shown.endswith(r"\right)\right)^{2}")
+    assert str(chain_sum(lambda a, b: a * b, q)) == "Sum(a_i*b_i, i = 1…3, (a, b)_1 = (q0, q1))"
+    assert str(pair_sum(lambda a, b: a * b, q)) == "Sum(a_i*a_j, i < j = 1…4, (a)_1 = (q0))"

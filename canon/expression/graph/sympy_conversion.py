@@ -9,6 +9,7 @@ import sympy as sp
 
 from canon.expression.graph.algebra import add, mul, power, raised
 from canon.expression.graph.elementary import function
+from canon.expression.symbols.repeated_sum import RepeatedSum
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -45,8 +46,18 @@ def from_sympy(arena: Arena, expression: Expr) -> int:
     done: dict[int, int] = {}
     whole: Any = sp.sympify(expression, strict=True)
     waiting: list[Any] = [whole]
+    plain: dict[int, Any] = {}
     while waiting:
         current = waiting[-1]
+        if isinstance(current, RepeatedSum):
+            if id(current) not in plain:
+                plain[id(current)] = current.doit()
+            if id(plain[id(current)]) not in done:
+                waiting.append(plain[id(current)])
+                continue
+            done[id(current)] = done[id(plain[id(current)])]
+            waiting.pop()
+            continue
         if not isinstance(current, sp.Expr) or isinstance(current, (sp.Piecewise, sp.Max, sp.Min)):
             raise NotModelledError(_complaint(current))
         missing = [argument for argument in current.args if id(argument) not in done]

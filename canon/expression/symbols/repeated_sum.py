@@ -10,17 +10,21 @@ import itertools
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
-from sympy import Expr, Tuple
+from mpmath.libmp import prec_to_dps
+from sympy import Dummy, Expr, Symbol, Tuple
+from sympy.printing.precedence import PRECEDENCE
 
 from canon.cached_property import cached_property
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from sympy import Symbol
     from sympy.printing.printer import Printer
 
 __all__ = ["RepeatedSum", "written_out"]
+
+_FEWEST = 64
+"""Sums of fewer terms are written out."""
 
 
 class RepeatedSum(Expr):
@@ -50,6 +54,7 @@ class RepeatedSum(Expr):
     """
 
     is_commutative = True
+    precedence = PRECEDENCE["Mul"]
 
     def __new__(
         cls, term: Any, slots: Iterable[Any], columns: Iterable[Iterable[Any]], pairs: Any = sp.false
@@ -115,9 +120,35 @@ class RepeatedSum(Expr):
         held: frozenset[Any] = frozenset(self.term.free_symbols) - {*self.slots}
         return held.union(*(each.free_symbols for column in self.columns for each in column))
 
+    @property
+    def depth(self) -> int:
+        """How deep sums stand in each other, 1 where none stands in the term."""
+        return 1 + max((each.depth for each in self.term.atoms(RepeatedSum)), default=0)
+
+    @property
+    def is_long(self) -> bool:
+        """Whether it is worth to be kept: short ones are written out, and then the compiler sees every term."""
+        return self.length >= _FEWEST
+
     def doit(self, **_hints: Any) -> Expr:
-        """Return the sum written out."""
-        return sp.Add(*(self._at(self.term, row) for row in self.arguments))
+        """Return the sum written out, sums in its term included."""
+        term = written_out(self.term)
+        return sp.Add(*(written_out(self._at(term, row)) for row in self.arguments))
+
+    def _xreplace(self, rule: Any) -> Any:
+        """Put expressions for others, but for the symbols of arguments, which mean nothing outside."""
+        if self in rule:
+            return rule[self], True
+        outside = {old: new for old, new in rule.items() if old not in self.slots}
+        whole = self
+        if any({*self.slots} & getattr(new, "free_symbols", set()) for new in outside.values()):
+            other: dict[Any, Any] = {slot: Dummy(slot.name, real=True) for slot in self.slots}
+            whole = RepeatedSum(self.term.xreplace(other), other.values(), *self._given[2:])
+        term, in_term = whole.term._xreplace(outside)  # noqa: SLF001, what SymPy's own classes override and call
+        columns, in_columns = whole._given[2]._xreplace(rule)  # noqa: SLF001
+        if not (in_term or in_columns):
+            return self, False
+        return RepeatedSum(term, whole.slots, columns, self.pairs), True
 
     def _at(self, f: Expr, row: Sequence[Expr]) -> Expr:
         placed: Any = f.xreplace(dict(zip(self.slots, row, strict=True)))
@@ -133,7 +164,7 @@ class RepeatedSum(Expr):
         return found
 
     def _eval_derivative(self, s: Any) -> Expr:
-        inner = self.term.diff(s)
+        inner = sp.Integer(0) if s in self.slots else self.term.diff(s)
         whole = list[Expr]() if inner == 0 else list[Expr]([self.of(inner)])
         slopes = [self.term.diff(slot) for slot in self.slots]
         for row in self._rows_with(s):
@@ -150,19 +181,38 @@ class RepeatedSum(Expr):
         partners = ((i, j) for i in own for j in range(len(rows)) if j not in held or j > i)
         return (rows[min(pair)] + rows[max(pair)] for pair in partners)
 
+    def _eval_evalf(self, prec: int) -> Any:
+        return self.doit().evalf(prec_to_dps(prec))
+
+    def _eval_is_polynomial(self, syms: Any) -> Any:
+        return self.doit().is_polynomial(*syms)
+
+    def _shown(self) -> Expr:
+        """Return the term with letters for its arguments, a_i, b_i …, and of the second of a pair a_j, b_j …."""
+        width = len(self.columns)
+        letters = [Symbol(f"{chr(97 + k % width % 26)}_{'ij'[k // width]}") for k in range(len(self.slots))]
+        return self._at(self.term, letters)
+
     def _sympystr(self, printer: Printer) -> str:
-        count = len(self.rows)
-        what = f"pairs of {count} rows" if self.pairs else f"{count} rows"
-        return f"Sum({printer.doprint(self.term)} over {what} of {printer.doprint(self.args[1])})"
+        count, first = len(self.columns[0]), ", ".join(printer.doprint(each) for each in self.rows[0])
+        letters = ", ".join(chr(97 + k % 26) for k in range(len(self.columns)))
+        over = f"i < j = 1…{count}" if self.pairs else f"i = 1…{count}"
+        return f"Sum({printer.doprint(self._shown())}, {over}, ({letters})_1 = ({first}))"
 
     def _latex(self, printer: Printer) -> str:
-        count = len(self.rows)
+        count = len(self.columns[0])
         index = rf"1 \le i < j \le {count}" if self.pairs else f"i = 1 \\ldots {count}"
-        return rf"\sum_{{{index}}} {printer.doprint(self.term)}"
+        return rf"\sum_{{{index}}} \left({printer.doprint(self._shown())}\right)"
+
+    def _code(self, printer: Printer) -> str:
+        """Return the sum written out in the language of a printer of code."""
+        return f"({printer.doprint(self.doit())})"
+
+    _pythoncode = _numpycode = _scipycode = _mpmathcode = _lambdacode = _ccode = _code
 
 
 def written_out(expression: Expr) -> Expr:
     """Return an expression with its repeated sums written out."""
     found = expression.atoms(RepeatedSum)
-    plain: Any = expression.xreplace({each: each.doit() for each in found})
+    plain: Any = expression.xreplace({each: each.doit() for each in found}) if found else expression
     return plain

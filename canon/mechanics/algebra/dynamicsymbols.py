@@ -8,6 +8,7 @@ import sympy as sp
 from sympy import Derivative, Expr, Symbol
 from sympy.core.function import AppliedUndef
 
+from canon.expression.symbols.repeated_sum import written_out
 from canon.expression.symbols.symbol import Coordinate, acceleration, time, velocity, without_dynamicsymbols
 from canon.expression.symbols.user_input import given_expression, given_kind
 from canon.mechanics.algebra.substitution import exchanged
@@ -91,12 +92,12 @@ def _rate_named(name: str, coordinates: Mapping[str, Symbol]) -> Symbol | None:
     return (velocity if what == "dot" else acceleration)(coordinates[of])
 
 
-def plain(f: Any, q: Sequence[Symbol], t: Symbol = time) -> Expr:
+def plain(f: Any, q: Sequence[Symbol], t: Symbol = time, *, keep_sums: bool = False) -> Expr:
     """Return an expression with canon's symbols for dynamicsymbols of these coordinates, their rates and the time.
 
     A function of one symbol whose name is that of a coordinate is that coordinate. Symbols named as rates
     (``theta_dot``) become the rates, and a symbol without assumptions named as the time, which ``dynamicsymbols._t``
-    is, becomes the time.
+    is, becomes the time. Sums over rows are written out where they are not to be kept.
 
     Examples
     --------
@@ -107,6 +108,8 @@ def plain(f: Any, q: Sequence[Symbol], t: Symbol = time) -> Expr:
     True
     """
     expression = given_expression(f)
+    if not keep_sums:
+        expression = written_out(expression)
     given_kind(t, Symbol, "the time", "give a domain and the like by their names")
     named = {s.name: s for s in q}
     applied = {

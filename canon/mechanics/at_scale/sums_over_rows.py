@@ -28,7 +28,7 @@ _FIRST = 10**9
 """Numbers of the symbols that stand for arguments; the same sum is the same expression each time it is written."""
 
 
-def row_sum(term: Callable[..., Any], *columns: Iterable[Any]) -> RepeatedSum:
+def row_sum(term: Callable[..., Any], *columns: Iterable[Any]) -> Expr:
     """Return Σ f(x_i, y_i, …) over rows, as ``map`` takes them.
 
     Parameters
@@ -55,11 +55,11 @@ def row_sum(term: Callable[..., Any], *columns: Iterable[Any]) -> RepeatedSum:
     if len(lengths) != 1 or lengths == {0}:
         counts = ", ".join(str(len(column)) for column in given) or "no columns"
         raise ValueError(f"columns of {counts} entries: give each as many, at least one")
-    slots = _slots(len(given))
-    return RepeatedSum(_term(term, slots), slots, [_entries(column) for column in given])
+    arguments = _arguments(len(given))
+    return _summed(_term(term, arguments), arguments, [_entries(column) for column in given])
 
 
-def chain_sum(term: Callable[[Any, Any], Any], sites: Sequence[Any]) -> RepeatedSum:
+def chain_sum(term: Callable[[Any, Any], Any], sites: Sequence[Any]) -> Expr:
     """Return Σ f(x_i, x_{i+1}) over neighbours in a chain.
 
     Parameters
@@ -94,13 +94,13 @@ def chain_sum(term: Callable[[Any, Any], Any], sites: Sequence[Any]) -> Repeated
     return row_sum(term, entries[:-1], entries[1:])
 
 
-def pair_sum(term: Callable[..., Any], bodies: Iterable[Any]) -> RepeatedSum:
+def pair_sum(term: Callable[..., Any], bodies: Iterable[Any]) -> Expr:
     """Return Σ f(a, b) over the pairs of bodies, each pair once.
 
     Parameters
     ----------
     term
-        f, a function of two bodies, each a tuple of what is given of it.
+        f, a function of two bodies, each a tuple of what is given of it; or the symbol, where that alone is given.
     bodies
         What stands for each body: its coordinates, and numbers that differ from body to body such as its mass.
 
@@ -119,7 +119,9 @@ def pair_sum(term: Callable[..., Any], bodies: Iterable[Any]) -> RepeatedSum:
     >>> len(written_out(pair_sum(attraction, bodies)).args)
     3
     """
-    rows = [tuple(body) if _is_listed(body) else (body,) for body in bodies]
+    given = list(bodies)
+    alone = not any(_is_listed(body) for body in given)
+    rows = [tuple(body) if _is_listed(body) else (body,) for body in given]
     if len(rows) < 2:
         raise ValueError(f"{len(rows)} bodies make no pair; give two or more")
     widths = {len(row) for row in rows}
@@ -127,12 +129,12 @@ def pair_sum(term: Callable[..., Any], bodies: Iterable[Any]) -> RepeatedSum:
         counts = ", ".join(map(str, sorted(widths)))
         raise ValueError(f"of some bodies more is given than of others ({counts} entries): give each as much")
     (width,) = widths
-    slots = _slots(2 * width)
-    value = _term(term, [slots[:width], slots[width:]])
-    return RepeatedSum(value, slots, [_entries(column) for column in zip(*rows, strict=True)], pairs=True)
+    arguments = _arguments(2 * width)
+    value = _term(term, arguments if alone else [arguments[:width], arguments[width:]])
+    return _summed(value, arguments, [_entries(column) for column in zip(*rows, strict=True)], pairs=True)
 
 
-def lattice_sum(term: Callable[[Any, Any], Any], sites: Any, *, periodic: bool = False) -> RepeatedSum:
+def lattice_sum(term: Callable[[Any, Any], Any], sites: Any, *, periodic: bool = False) -> Expr:
     """Return Σ f(x, x′) over nearest neighbours in a lattice, each bond once.
 
     Parameters
@@ -156,7 +158,10 @@ def lattice_sum(term: Callable[[Any, Any], Any], sites: Any, *, periodic: bool =
     >>> written_out(lattice_sum(lambda a, b: a*b, [x[:2], x[2:]]))
     x0*x1 + x0*x2 + x1*x3 + x2*x3
     """
-    array = np.array(sites, dtype=object)
+    rows = (
+        sites if isinstance(sites, np.ndarray) else [list(row) if _is_listed(row) else row for row in sites]
+    )
+    array = np.array(rows, dtype=object)
     if any(_is_listed(each) for each in array.flat):
         raise ValueError("the rows of the lattice differ in length")
     first: list[Any] = []
@@ -173,10 +178,31 @@ def lattice_sum(term: Callable[[Any, Any], Any], sites: Any, *, periodic: bool =
     return row_sum(term, first, second)
 
 
+def _arguments(count: int) -> list[Dummy]:
+    """Return new symbols for so many arguments: no sum that stands in the term has them."""
+    return [Dummy(f"x{k}", real=True) for k in range(count)]
+
+
+def _summed(
+    term: Expr, arguments: Sequence[Dummy], columns: Sequence[Sequence[Expr]], *, pairs: bool = False
+) -> Expr:
+    """Return the sum of a term, without the columns that it does not hold, in the symbols that it has every time."""
+    width, held = len(columns), term.free_symbols
+    used = [k for k in range(width) if held.intersection(arguments[k::width])]
+    rows = len(columns[0])
+    if not used:
+        return term * (rows * (rows - 1) // 2 if pairs else rows)
+    depth = 1 + max((each.depth for each in term.atoms(RepeatedSum)), default=0)
+    kept = [arguments[shift + k] for shift in range(0, len(arguments), width) for k in used]
+    slots = _slots(len(kept), depth)
+    renamed: Any = term.xreplace(dict(zip(kept, slots, strict=True)))
+    return RepeatedSum(renamed, slots, [columns[k] for k in used], pairs)
+
+
 @functools.cache
-def _slots(count: int) -> tuple[Dummy, ...]:
-    """Return the symbols that stand for so many arguments."""
-    return tuple(Dummy(f"x{k}", dummy_index=_FIRST + k, real=True) for k in range(count))
+def _slots(count: int, depth: int) -> tuple[Dummy, ...]:
+    """Return the symbols that stand for so many arguments, others the more sums stand in each other."""
+    return tuple(Dummy(f"x{k}", dummy_index=_FIRST * depth + k, real=True) for k in range(count))
 
 
 def _term(term: Callable[..., Any], arguments: Sequence[Any]) -> Expr:

@@ -10,8 +10,9 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.cached_property import cached_property
+from canon.expression.symbols.repeated_sum import RepeatedSum
 from canon.expression.symbols.symbol import Rate, momentum, time, velocity
-from canon.expression.symbols.user_input import counted, given_kind
+from canon.expression.symbols.user_input import counted, given_expression, given_kind
 from canon.mechanics.algebra.all_vanish import having_values
 from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain, plain_all, plain_places
 from canon.mechanics.algebra.linear import is_regular
@@ -81,7 +82,9 @@ class Hamiltonian:
     ) -> None:
         object.__setattr__(self, "q", coordinate_symbols(q))
         object.__setattr__(self, "p", coordinate_symbols(p))
-        object.__setattr__(self, "H", plain(H, (*self.q, *self.p), t))
+        given = given_expression(H, "H")
+        long = any(each.is_long for each in given.atoms(RepeatedSum))
+        object.__setattr__(self, "H", plain(given, (*self.q, *self.p), t, keep_sums=long))
         object.__setattr__(self, "t", t)
         if not self.q:
             raise ValueError("no coordinates given; a system moves in at least one")

@@ -50,17 +50,18 @@ class PairForces:
     numbers: tuple[tuple[Fraction, ...], ...] = ()
 
 
-def forces_of_pair_sum(whole: RepeatedTerms) -> PairForces | None:
+def forces_of_pair_sum(whole: RepeatedTerms, n: int) -> PairForces | None:
     """Return the forces of a sum over pairs of rows, or None where it is no symmetric function of bodies in order.
 
-    A row is a body: its coordinates, which follow each other in q body by body, and its numbers.
+    A row is a body: its coordinates, which follow each other in q body by body, and its numbers. All n coordinates are
+    those of bodies.
     """
     width, axes = len(whole.columns), len(whole.moving)
     first, second = whole.slots[:width], whole.slots[width:]
     here = {s: (body, k) for body, slots in enumerate((first, second)) for k, s in enumerate(slots)}
     there = {s: (1 - body, k) for s, (body, k) in here.items()}
     symbols = whole.graph.symbols(whole.node)
-    in_order = all(
+    in_order = whole.count * axes == n and all(
         np.array_equal(np.asarray(whole.columns[k]), np.arange(whole.count) * axes + i)
         for i, k in enumerate(whole.moving)
     )

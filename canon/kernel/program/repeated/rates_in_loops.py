@@ -51,7 +51,9 @@ def rates_in_loops(sums: Sequence[RepeatedTerms], t: Symbol, n: int) -> RatesInL
         return None
     of_pairs = [each for each in sums if each.pairs]
     single = [each for each in sums if not each.pairs]
-    pairs = forces_of_pair_sum(of_pairs[0]) if len(of_pairs) == 1 and of_pairs[0].reads(n) == {"q"} else None
+    pairs = (
+        forces_of_pair_sum(of_pairs[0], n) if len(of_pairs) == 1 and of_pairs[0].reads(n) == {"q"} else None
+    )
     if len(of_pairs) != (pairs is not None) or (single and most_addends(single) > MOST_ADDENDS):
         return None
     velocity = [each for each in single if each.reads(n) == {"p"}]

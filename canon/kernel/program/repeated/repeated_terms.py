@@ -23,9 +23,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Column", "KeptFunction", "RepeatedTerms", "repeated_terms", "sums_in"]
 
-_FEWEST = 64
-"""Sums of fewer terms are written out: then the compiler sees every term."""
-
 _SINGLE = 200
 """Up to so many operations may stand beside the sums, written out."""
 
@@ -145,7 +142,7 @@ def repeated_terms(
     KeyError
         A symbol of H is neither a coordinate, a momentum, the time nor a given parameter.
     """
-    if not any(each.length >= _FEWEST for each in hamiltonian.atoms(RepeatedSum)):
+    if not any(each.is_long for each in hamiltonian.atoms(RepeatedSum)):
         return None
     found = sums_in(hamiltonian, (*q, *p), t, parameters, "the Hamiltonian")
     if found is None or any(each.is_single and each.size > _SINGLE for each in found):
