@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Finding", "InvalidClaim", "examine", "examined", "judge", "questions"]
 
-_ONE_VALUE = ("energy_rate", "T", "values", "force")
-"""Keys whose answers are values, equal on the motion or on the constraints if both are right."""
+_ONE_VALUE = ("energy_rate", "T", "values", "force", "J", "omega")
+"""Keys whose answers are values, equal on the motion, on the constraints or at its energy if both are right."""
 
 
 @dataclass(frozen=True)

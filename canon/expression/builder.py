@@ -210,7 +210,28 @@ class Builder:
             self.refuse(node, "a derivative of more than the 8th order")
         if all(variable == self.scope.time for variable, _ in orders) and self._along(node, value):
             return reduce(lambda f, _: self.rate(node, f), range(sum(order for _, order in orders)), value)
+        for variable, _ in orders:
+            self.ask_what_depends(node, node.arguments[0], value, variable)
         return reduce(lambda f, order: f.diff(*order), orders, value)
+
+    def ask_what_depends(
+        self, node: syntax.Call, operand: syntax.Node, value: Expr, variable: Symbol
+    ) -> None:
+        """Refuse derivatives that would be 0 only because it is not written how their operand depends on the variable.
+
+        ∂E/∂J is a frequency, and ∂w(τ)/∂t is ε w′, though neither J nor t stands in what is differentiated.
+        """
+        held = {symbol.name for symbol in value.free_symbols} - {variable.name}
+        bare = isinstance(operand, syntax.Name) and isinstance(value, Symbol) and not self.scope.independent
+        hidden = sorted(held & self.scope.dependent)
+        by_hidden = variable.name in self.scope.dependent and variable not in value.free_symbols and held
+        if value != variable and (hidden or by_hidden or (bare and operand.text not in self.scope.values)):
+            what = ", ".join(hidden) or (operand.text if isinstance(operand, syntax.Name) else str(value))
+            self.refuse(
+                node,
+                f"does {what} depend on {variable} here, or is it held fixed?",
+                "write the derivative out",
+            )
 
     def _along(self, node: syntax.Call, value: Expr) -> bool:
         """Tell whether a derivative with respect to the time is one along the motion, as that of ``theta(t)``."""
@@ -262,6 +283,7 @@ class Builder:
             symbol = self.expression(variable)
             if not isinstance(symbol, Symbol) or not isinstance(order, syntax.Number):
                 self.refuse(node, "a derivative is taken with respect to a declared symbol")
+            self.ask_what_depends(node, operand, value, symbol)
             value = value.diff(symbol, order.numerator)
         return value
 

@@ -78,7 +78,17 @@ class DeclaredSymbols:
         signs = {name: self.assumptions(name) for name in functions}
         implicit = keys.get("implicit_multiplication") is True
         moving = frozenset(name for key in _MOVING if self.is_names(key) for name in as_list(keys[key]))
-        return Scope({**added, **names}, functions, self.time, signs, implicit, moving, FrozenMapping(other))
+        return Scope(
+            {**added, **names}, functions, self.time, signs, implicit, moving, FrozenMapping(other),
+            independent=self.kind.independent or self.kind.two_sided, dependent=self._dependent(),
+        )  # fmt: skip
+
+    def _dependent(self) -> frozenset[str]:
+        """Return the names that depend on others in a way that is not written; the energy is E unless it is named."""
+        named = {key: as_list(self.keys[key]) for key in self.kind.dependent if key in self.keys}
+        if "energy" in self.kind.dependent:
+            named.setdefault("energy", ["E"])
+        return frozenset(str(name) for names in named.values() for name in names)
 
     def is_names(self, key: str) -> bool:
         """Whether a list of names stands under a key."""

@@ -109,6 +109,10 @@ class Kind:
         Keys whose names stand for complex variables: of a real one |s|² is s², and would pass for a polynomial.
     following
         Keys whose names stand for what follows from other variables and can't be chosen freely.
+    dependent
+        Keys of names that depend on other names in a way that is not written: derivatives of them are asked about.
+    independent
+        Whether a derivative of one symbol by another is plainly 0, as in brackets.
     two_sided
         Whether what is claimed is that two sides are the same, in symbols that are all alike.
     varying
@@ -144,6 +148,8 @@ class Kind:
     about: tuple[str, ...] = ()
     complex_names: tuple[str, ...] = ()
     following: tuple[str, ...] = ("momenta", "multipliers")
+    dependent: tuple[str, ...] = ()
+    independent: bool = False
     two_sided: bool = False
     varying: tuple[str, ...] = ()
     quadratures: tuple[str, ...] = ()

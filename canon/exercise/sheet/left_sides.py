@@ -80,6 +80,10 @@ _ACTION = re.compile(
     r"(?:\\mathrm\s?\{d\}|\\dd|d)\s{0,9}\\?\w{1,9}"
 )
 """``∫ p dq``, and the share of it that an action is; repeats are bounded, or blanks are tried in too many ways."""
+_FREQUENCY = re.compile(r"[∂d][EH]/[∂d](?P<action>[JI])")
+"""A frequency by its definition."""
+_ENERGY_AND_ONE = 2
+"""Where there are several actions, ∂E/∂J is the frequency of one of them."""
 _OF_ANY = r"[-−+]?∂[HLFKSRVUW][_0-9]{0,3}/∂[^-−+=∂*/(){}\[\]]{1,20}|\{[^={}]{1,20},H\}"
 """Derivatives of functions that are not given, and the bracket with H."""
 
@@ -287,6 +291,11 @@ def is_definition(said: str, key: str, scope: Scope) -> bool:
     (True, False)
     """
     said = said.replace("−", "-")
+    if key == "omega" and (rate := _FREQUENCY.fullmatch(said)) is not None:
+        action = rate["action"]
+        return not scope.declares(action) or (
+            action in scope.dependent and len(scope.dependent) <= _ENERGY_AND_ONE
+        )
     names = set(re.findall(r"[A-Z]", said))
     if not names or any(scope.declares(name) for name in names):
         return False

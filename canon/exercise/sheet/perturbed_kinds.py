@@ -48,6 +48,7 @@ PERTURBED: Mapping[str, Kind] = MappingProxyType(
             answer=("J", "transformation"),
             components=("J",),
             unknowns="the action of each coordinate, or the map",
+            dependent=("energy",),
         ),
         "frequency": Kind(
             "perturbed.tori.frequency",
@@ -56,6 +57,7 @@ PERTURBED: Mapping[str, Kind] = MappingProxyType(
             answer=("omega",),
             components=("omega",),
             unknowns="the frequency of each coordinate",
+            dependent=("energy", "actions"),
         ),
         "lie-series": Kind(
             "perturbed.lie_transforms.lie_series",
@@ -97,6 +99,7 @@ PERTURBED: Mapping[str, Kind] = MappingProxyType(
             {**_TO_AN_ORDER, "slow": _N, "slow_q": _N},
             answer=("I",),
             unknowns="one invariant to the order",
+            dependent=("slow", "slow_q"),
             varying=("I",),
             derived=True,
             repaired=("I",),

@@ -54,6 +54,10 @@ class Scope:
         None where a name has none.
     quadratures
         Whether an integral over a coordinate may have no limits, as in W = ∫ √(2m(E − V)) dx.
+    independent
+        Whether a derivative of one symbol by another is plainly 0, as in brackets; elsewhere it is asked about.
+    dependent
+        Names of what depends on other names in a way that is not written, as the energy on q and p and an action on it.
 
     Examples
     --------
@@ -73,6 +77,8 @@ class Scope:
     other_names: Mapping[str, Symbol] = field(default_factory=lambda: MappingProxyType({}))
     values: Mapping[str, Expr | None] = field(default_factory=lambda: MappingProxyType({}))
     quadratures: bool = False
+    independent: bool = True
+    dependent: frozenset[str] = frozenset()
 
     def __hash__(self) -> int:
         return hash(
@@ -84,6 +90,8 @@ class Scope:
                 self.moving,
                 frozenset(self.other_names.items()),
                 self.quadratures,
+                self.independent,
+                self.dependent,
             )
         )
 

@@ -185,9 +185,10 @@ class GivenFunctions:
 
         def named(found: re.Match[str]) -> str:
             by = parse_expression(found["by"], self.scope)
-            if found["of"] not in letters or not isinstance(by, sp.Symbol):
+            of = letters.get(found["of"])
+            if of is None or not isinstance(by, sp.Symbol) or self._hides(of, by):
                 return found.group()
-            slopes[f"Slope_{len(slopes)}"] = letters[found["of"]].diff(by)
+            slopes[f"Slope_{len(slopes)}"] = of.diff(by)
             return f" Slope_{len(slopes) - 1} "
 
         return _SLOPE.sub(named, text), slopes
@@ -207,8 +208,14 @@ class GivenFunctions:
         symbol = parse_expression(term["by"], self.scope)
         if not isinstance(symbol, sp.Symbol):
             return None
+        if self._hides(function, symbol):
+            return None
         slope = function.diff(symbol)
         return time_derivative(slope, self._symbols("q") or [], self.scope.time) if term["rate"] else slope
+
+    def _hides(self, function: Expr, symbol: Symbol) -> bool:
+        """Whether it is not written how a function depends on a symbol: ∂H/∂J is a frequency, with no J in H."""
+        return symbol.name in self.scope.dependent and not function.has(symbol)
 
     def _bracket(self, f: Expr, g: Expr) -> Expr | None:
         """Return Poisson's bracket in the claim's coordinates and momenta."""
