@@ -222,11 +222,17 @@ class Builder:
         ∂E/∂J is a frequency, and ∂w(τ)/∂t is ε w′, though neither J nor t stands in what is differentiated.
         """
         held = {symbol.name for symbol in value.free_symbols} - {variable.name}
-        bare = isinstance(operand, syntax.Name) and isinstance(value, Symbol) and not self.scope.independent
         hidden = sorted(held & self.scope.dependent)
+        name = operand.text if isinstance(operand, syntax.Name) else ""
+        bare = (
+            name
+            and isinstance(value, Symbol)
+            and not self.scope.independent
+            and name not in self.scope.values
+        )
         by_hidden = variable.name in self.scope.dependent and variable not in value.free_symbols and held
-        if value != variable and (hidden or by_hidden or (bare and operand.text not in self.scope.values)):
-            what = ", ".join(hidden) or (operand.text if isinstance(operand, syntax.Name) else str(value))
+        if value != variable and (hidden or by_hidden or bare):
+            what = ", ".join(hidden) or name or str(value)
             self.refuse(
                 node,
                 f"does {what} depend on {variable} here, or is it held fixed?",

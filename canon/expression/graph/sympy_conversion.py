@@ -50,13 +50,7 @@ def from_sympy(arena: Arena, expression: Expr) -> int:
     while waiting:
         current = waiting[-1]
         if isinstance(current, RepeatedSum):
-            if id(current) not in plain:
-                plain[id(current)] = current.doit()
-            if id(plain[id(current)]) not in done:
-                waiting.append(plain[id(current)])
-                continue
-            done[id(current)] = done[id(plain[id(current)])]
-            waiting.pop()
+            _as_written_out(current, plain, done, waiting)
             continue
         if not isinstance(current, sp.Expr) or isinstance(current, (sp.Piecewise, sp.Max, sp.Min)):
             raise NotModelledError(_complaint(current))
@@ -68,6 +62,20 @@ def from_sympy(arena: Arena, expression: Expr) -> int:
         if id(current) not in done:
             done[id(current)] = _node(arena, current, [done[id(a)] for a in current.args])
     return done[id(whole)]
+
+
+def _as_written_out(
+    whole: RepeatedSum, plain: dict[int, Any], done: dict[int, int], waiting: list[Any]
+) -> None:
+    """Give a sum over rows the node of what it is written out, or let that wait for its own."""
+    if id(whole) not in plain:
+        plain[id(whole)] = whole.doit()
+    written = plain[id(whole)]
+    if id(written) not in done:
+        waiting.append(written)
+        return
+    done[id(whole)] = done[id(written)]
+    waiting.pop()
 
 
 def _node(arena: Arena, expression: Any, operands: list[int]) -> int:
