@@ -221,7 +221,7 @@ class Builder:
 
         ∂E/∂J is a frequency, and ∂w(τ)/∂t is ε w′, though neither J nor t stands in what is differentiated.
         """
-        held = {symbol.name for symbol in value.free_symbols} - {variable.name}
+        held = {str(symbol) for symbol in value.free_symbols} - {variable.name}
         hidden = sorted(held & self.scope.dependent)
         name = operand.text if isinstance(operand, syntax.Name) else ""
         bare = (
