@@ -135,3 +135,24 @@ def test_symbols_that_are_all_alike_do_not_depend_on_each_other():
         "parameters": {"x": "real", "y": "real"},
     }
     assert examine(claim_from({**both, "id": "a"})).verdict.holds
+
+
+FREE = {"kind": "solution", "q": ["x"], "L": "x'^2/2 - w^2 x^2/2", "constants": ["E"],
+        "parameters": {"w": "positive", "E": "positive"}, "domain": ["2*E - w**2*x**2 > 0"]}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "said", ["x' = sqrt(2E - w^2 x^2)", "dx/dt = sqrt(2E - w^2 x^2)", r"$\dot x = \sqrt{2E - w^2 x^2}$"]
+)
+def test_rates_are_called_by_their_own_names(said):
+    assert (
+        verdict(FREE, "rates", {"x": said}).status
+        is verdict(FREE, "rates", {"x": "sqrt(2E - w^2 x^2)"}).status
+    )
+    assert verdict(FREE, "rates", {"x": said.replace("- w", "- 2w")}).fails
+    with pytest.raises(InvalidClaim, match="x' is asked for here"):
+        verdict(
+            FREE,
+            "rates",
+            {"x": said.replace("x' =", "x =").replace("dx/dt =", "x'' =").replace(r"\dot x =", "v =")},
+        )

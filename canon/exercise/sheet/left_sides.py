@@ -25,6 +25,7 @@ __all__ = [
     "Label",
     "Quantity",
     "components_asked",
+    "entry_asked",
     "has_primes",
     "is_action",
     "is_asked",
@@ -134,6 +135,19 @@ class Quantity:
         (True, False)
         """
         return any(key_of(name) == key_of(label.name) and rates == label.rates for name, rates in self.names)
+
+
+def entry_asked(key: str, name: str) -> Quantity:
+    """Return what an entry of a table is called, under ``rates`` the velocity of its coordinate.
+
+    Examples
+    --------
+    >>> entry_asked("rates", "x").named_by(label_of("dx/dt")), entry_asked("solution", "x").named_by(label_of("x(t)"))
+    (True, True)
+    """
+    if key == "rates":
+        return Quantity(f"{name}'", ((name, 1), (f"{name}_dot", 0)))
+    return Quantity(name, ((name, 0),))
 
 
 def components_asked(place: str, keys: Mapping[str, Any], scope: Scope) -> tuple[Quantity, ...]:

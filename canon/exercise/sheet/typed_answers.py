@@ -23,6 +23,7 @@ from canon.exercise.sheet.left_sides import (
     OTHER_SPELLINGS,
     Quantity,
     components_asked,
+    entry_asked,
     has_primes,
     is_asked,
     is_of_another,
@@ -136,7 +137,7 @@ class _Plain:
                 )
             case Shape.EXPRESSIONS if isinstance(value, Mapping):
                 return {
-                    name: self.expression(f"{key}.{name}", text, Quantity(name, ((name, 0),)))
+                    name: self.expression(f"{key}.{name}", text, entry_asked(key, name))
                     for name, text in value.items()
                 }
             case Shape.LISTS if isinstance(value, Mapping):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from canon.exercise.sheet import field_texts
 from canon.exercise.sheet.kind import Shape
-from canon.exercise.sheet.left_sides import Quantity, components_asked, is_asked, label_of
+from canon.exercise.sheet.left_sides import components_asked, entry_asked, is_asked, label_of
 from canon.exercise.sheet.quantities.abbreviations import without_abbreviations
 from canon.expression.parse import LanguageError
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from canon.exercise.sheet.equations.sides import Sides
     from canon.exercise.sheet.kind import Kind
-    from canon.exercise.sheet.left_sides import Label
+    from canon.exercise.sheet.left_sides import Label, Quantity
 
 __all__ = ["WrittenAnswers"]
 
@@ -58,9 +58,7 @@ class WrittenAnswers:
             value = self._without_constant(key, value)
         shape = self.kind.shapes.get(key)
         if shape is Shape.EXPRESSIONS and isinstance(value, Mapping):
-            return {
-                name: self._put_in(key, text, (Quantity(name, ((name, 0),)),)) for name, text in value.items()
-            }
+            return {name: self._put_in(key, text, (entry_asked(key, name),)) for name, text in value.items()}
         if key in self.kind.several or shape not in (Shape.TEXT, Shape.TEXTS):
             return value
         names = components_asked(key, self.sides.keys, self.sides.scope) if shape is Shape.TEXTS else ()
