@@ -139,8 +139,7 @@ def equal(
             pairs = zip(cast("list[Expr]", a.flat()), cast("list[Expr]", b.flat()), strict=True)
             verdict = _entries_with_values(verdict, dict.fromkeys(pairs), domain, start + budget)
         return verdict.about("the matrices are equal")
-    left, right = (each if isinstance(each, sp.MatrixBase) else written_out(each) for each in (a, b))
-    verdict = _decide(left, right, domain, start + budget, SIDES)
+    verdict = _decide(written_out(a), written_out(b), domain, start + budget, SIDES)
     return replace(verdict, question="the expressions are equal", seconds=time.monotonic() - start)
 
 

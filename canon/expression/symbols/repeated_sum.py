@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from sympy.printing.printer import Printer
 
-__all__ = ["RepeatedSum", "written_out"]
+__all__ = ["RepeatedSum", "sums_within", "written_out"]
 
 _FEWEST = 64
 """Sums of fewer terms are written out."""
@@ -123,7 +123,7 @@ class RepeatedSum(Expr):
     @property
     def depth(self) -> int:
         """How deep sums stand in each other, 1 where none stands in the term."""
-        return 1 + max((each.depth for each in self.term.atoms(RepeatedSum)), default=0)
+        return 1 + max((each.depth for each in sums_within(self.term)), default=0)
 
     @property
     def is_long(self) -> bool:
@@ -211,8 +211,29 @@ class RepeatedSum(Expr):
     _pythoncode = _numpycode = _scipycode = _mpmathcode = _lambdacode = _ccode = _code
 
 
-def written_out(expression: Expr) -> Expr:
-    """Return an expression with its repeated sums written out."""
-    found = expression.atoms(RepeatedSum)
-    plain: Any = expression.xreplace({each: each.doit() for each in found}) if found else expression
-    return plain
+def sums_within(expression: Any) -> set[RepeatedSum]:
+    """Return the sums in an expression, those inside other sums aside; nothing recurses, however deep it is."""
+    found: set[RepeatedSum] = set()
+    waiting, seen = [expression], set[int]()
+    while waiting:
+        current = waiting.pop()
+        if isinstance(current, RepeatedSum):
+            found.add(current)
+        elif isinstance(current, sp.Basic) and current.args and id(current) not in seen:
+            seen.add(id(current))
+            waiting.extend(current.args)
+    return found
+
+
+def written_out(expression: Any) -> Any:
+    """Return an expression with its sums over rows written out, and everything else as it is.
+
+    Examples
+    --------
+    >>> from canon.mechanics import row_sum
+    >>> from sympy import symbols
+    >>> written_out(1 + row_sum(lambda x: x**2, symbols("x y")))
+    x**2 + y**2 + 1
+    """
+    found = sums_within(expression)
+    return expression.xreplace({each: each.doit() for each in found}) if found else expression

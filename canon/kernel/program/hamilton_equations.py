@@ -10,7 +10,7 @@ import sympy as sp
 
 from canon.cached_property import cached_property
 from canon.expression.graph.graph import Graph
-from canon.expression.symbols.repeated_sum import RepeatedSum, written_out
+from canon.expression.symbols.repeated_sum import sums_within, written_out
 from canon.frozen_mapping import FrozenMapping
 from canon.kernel.program.program import Program, exact_value, program, with_numbers
 from canon.kernel.program.repeated.rates_in_loops import rates_in_loops
@@ -241,7 +241,7 @@ def equations(
     """
     q, p = tuple(q), tuple(p)
     varying = tuple(varying)
-    if hamiltonian.has(RepeatedSum):
+    if sums_within(hamiltonian):
         kept = None if varying else _of_sums(hamiltonian, q, p, t, parameters)
         if kept is not None:
             return kept

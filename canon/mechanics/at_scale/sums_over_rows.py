@@ -14,7 +14,7 @@ import sympy as sp
 from sympy import Dummy
 
 from canon.expression.symbols.input_in_words import described
-from canon.expression.symbols.repeated_sum import RepeatedSum, written_out
+from canon.expression.symbols.repeated_sum import RepeatedSum, sums_within, written_out
 from canon.expression.symbols.user_input import given_expression
 
 if TYPE_CHECKING:
@@ -192,7 +192,7 @@ def _summed(
     rows = len(columns[0])
     if not used:
         return term * (rows * (rows - 1) // 2 if pairs else rows)
-    depth = 1 + max((each.depth for each in term.atoms(RepeatedSum)), default=0)
+    depth = 1 + max((each.depth for each in sums_within(term)), default=0)
     kept = [arguments[shift + k] for shift in range(0, len(arguments), width) for k in used]
     slots = _slots(len(kept), depth)
     renamed: Any = term.xreplace(dict(zip(kept, slots, strict=True)))

@@ -10,7 +10,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.cached_property import cached_property
-from canon.expression.symbols.repeated_sum import RepeatedSum
+from canon.expression.symbols.repeated_sum import sums_within
 from canon.expression.symbols.symbol import Rate, momentum, time, velocity
 from canon.expression.symbols.user_input import counted, given_expression, given_kind
 from canon.mechanics.algebra.all_vanish import having_values
@@ -83,7 +83,7 @@ class Hamiltonian:
         object.__setattr__(self, "q", coordinate_symbols(q))
         object.__setattr__(self, "p", coordinate_symbols(p))
         given = given_expression(H, "H")
-        long = any(each.is_long for each in given.atoms(RepeatedSum))
+        long = any(each.is_long for each in sums_within(given))
         object.__setattr__(self, "H", plain(given, (*self.q, *self.p), t, keep_sums=long))
         object.__setattr__(self, "t", t)
         if not self.q:

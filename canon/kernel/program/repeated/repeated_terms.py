@@ -11,7 +11,7 @@ from sympy import Symbol
 
 from canon.cached_property import cached_property
 from canon.expression.graph.graph import Graph
-from canon.expression.symbols.repeated_sum import RepeatedSum
+from canon.expression.symbols.repeated_sum import RepeatedSum, sums_within
 from canon.kernel.program.program import exact_value, with_numbers
 
 if TYPE_CHECKING:
@@ -142,7 +142,7 @@ def repeated_terms(
     KeyError
         A symbol of H is neither a coordinate, a momentum, the time nor a given parameter.
     """
-    if not any(each.is_long for each in hamiltonian.atoms(RepeatedSum)):
+    if not any(each.is_long for each in sums_within(hamiltonian)):
         return None
     found = sums_in(hamiltonian, (*q, *p), t, parameters, "the Hamiltonian")
     if found is None or any(each.is_single and each.size > _SINGLE for each in found):
