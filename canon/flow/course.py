@@ -43,7 +43,7 @@ class Course:
     ends, wanted, plan
         The first and the last time, when to keep the state, and the steps for that; None of a time-transformed method.
     names, observed
-        The observables; H, then they, on the system's graph.
+        The observables, H aside: nodes of the system's graph, or sums where H is kept as such.
     cadence, events, dense, max_step, fictitious
         As :class:`canon.flow.task.Task` has them.
     """
@@ -103,12 +103,9 @@ class Course:
             max_step=self.max_step,
         )
         _check_events(task)
-        smooth = bool(self.system.sums)  # others are written out
-        if (
-            self.method.engine.takes_step
-            and not smooth
-            and self.method not in (KICK_AND_DRIFT, DRIFT_AND_KICK)
-        ):
+        is_map = self.method in (KICK_AND_DRIFT, DRIFT_AND_KICK)
+        kept = bool(self.system.sums)  # sums with kinks are written out
+        if self.method.engine.takes_step and not is_map and not kept:
             _warn_of_kinks(self.system, self.method)
         return task
 

@@ -1,10 +1,15 @@
 """Derivatives that would be 0 only because it is not written what depends on what are asked about, and never judged."""
 
 import pytest
+import sympy as sp
 
+from canon import Domain, Verdict
 from canon.exercise.claim_verdict import examine
+from canon.exercise.question.deadline import Deadline
+from canon.exercise.question.question import Chain, Part, decide
 from canon.exercise.sheet.reading import InvalidClaim
 from canon.exercise.sheet.sheet import claim_from
+from canon.proof.domain.verdict import Status
 
 MORSE = {"kind": "frequency", "q": ["x"], "p": ["p"], "H": "p^2/(2m) + D*(1 - exp(-a*x))^2",
          "parameters": {"m": "positive", "D": "positive", "a": "positive", "E": "positive"},
@@ -28,7 +33,7 @@ JACOBI = {"kind": "hamilton-jacobi", "q": ["q"], "p": ["p"], "H": "p^2/(2m) + m 
           "parameters": {"m": "positive", "w": "positive", "E": "positive"}, "energy": "E"}  # fmt: skip
 KEPLER = {"kind": "frequency", "q": ["r", "phi"], "p": ["pr", "l"], "H": "(pr^2 + l^2/r^2)/(2m) - k/r",
           "parameters": {"m": "positive", "k": "positive", "E": "negative", "l": "positive"},
-          "domain": ["(pr**2 + l**2/r**2)/(2*m) - k/r < 0"], "actions": ["J1", "J2"]}  # fmt: skip
+          "domain": ["(pr**2 + l**2/r**2)/(2*m) - k/r < 0"], "actions": ["J1", "J2"], "budget": 60}  # fmt: skip
 
 
 def verdict(base, key, answer):
@@ -110,6 +115,20 @@ def test_what_depends_is_asked(base, key, answer):
 def test_what_is_written_out_is_judged(base, key, right, wrong):
     assert verdict(base, key, right).holds
     assert verdict(base, key, wrong).fails
+
+
+def test_sides_that_differ_are_no_wrong_chain_where_it_is_open_whether_each_is_right():
+    x, y = sp.symbols("x y", real=True)
+    seen = {}
+    for status in Status:
+        other = Verdict(status, "whether the left side is right", "exact")
+        chain = Chain(
+            Part("the chain", x, y), Domain(), "two sides are not equal", lambda other=other: iter([other])
+        )
+        seen[status] = decide(chain, Deadline.after(10.0))
+    assert {status: found.status for status, found in seen.items()} == {each: each for each in Status}
+    assert seen[Status.FAILS].feedback == "two sides are not equal"
+    assert decide(Chain(Part("the chain", x, y), Domain(), "not equal"), Deadline.after(10.0)).fails
 
 
 def test_of_several_frequencies_the_derivative_says_which():

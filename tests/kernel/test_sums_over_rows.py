@@ -28,7 +28,7 @@ from canon import (
     vanishes,
 )
 from canon.expression.symbols.repeated_sum import RepeatedSum
-from canon.flow.checked_request import hamilton_equations_of
+from canon.flow.checked_request import _kept_system, hamilton_equations_of
 from canon.mechanics import chain_sum, lattice_sum, pair_sum, row_sum, written_out
 
 SITES = 90
@@ -147,6 +147,7 @@ def test_a_sum_moves_as_it_does_written_out(make, precision):
 @pytest.mark.parametrize("make", KEPT)
 def test_nothing_is_written_out_by_a_splitting(make, monkeypatch):
     system, _ = made(make)
+    _kept_system.cache_clear()  # equations kept from another test may have been written out there
     monkeypatch.setattr(RepeatedSum, "doit", lambda *_, **__: pytest.fail("written out"))
     run = propagate(system, (0, 1), start(system), method=Splitting("verlet"), step=0.05, samples=5)
     assert np.isfinite(run.energy_change).all()
@@ -162,6 +163,32 @@ def test_orbits_side_by_side_move_as_one_by_one(make):
     for k in range(5):
         alone = propagate(system, (0, 1), y0[:, k], **how)
         np.testing.assert_allclose(together.y[:, :, k], alone.y, rtol=1e-13, atol=1e-13)
+
+
+@pytest.mark.parametrize("scheme", ["verlet", "srkn-6b"])
+def test_where_no_force_acts_the_momenta_stay(scheme):
+    q, p = variables(80)
+    system, y0 = Hamiltonian(kinetic(p), q, p), np.arange(160.0)
+    assert hamilton_equations_of(system, {}).sums
+    end = propagate(system, (0, 1), y0, method=Splitting(scheme), step=0.125, samples=1).y[:, -1]
+    assert np.array_equal(end[80:], y0[80:])
+    np.testing.assert_allclose(end[:80], y0[:80] + y0[80:], rtol=1e-14)
+
+
+def test_where_nothing_is_kinetic_the_places_stay():
+    q, p = variables(80)
+    system, y0 = Hamiltonian(chain_sum(bond, q), q, p), np.sin(np.arange(160.0))
+    assert hamilton_equations_of(system, {}).sums
+    end = propagate(system, (0, 1), y0, method=Splitting("verlet"), step=0.125, samples=1).y[:, -1]
+    assert np.array_equal(end[:80], y0[:80])
+    assert np.abs(end[80:] - y0[80:]).max() > 0.1
+
+
+def test_kick_first_schemes_keep_the_force_of_pairs():
+    system, plain = made(bodies)
+    how = {"method": Splitting("srkn-6b"), "step": 0.02, "samples": 2}
+    one, other = (propagate(each, (0, 1), start(system), **how) for each in (system, plain))
+    np.testing.assert_allclose(one.y, other.y, rtol=0, atol=1e-12 * np.abs(other.y).max())
 
 
 def test_a_step_is_symplectic_and_goes_back():
@@ -210,6 +237,7 @@ def test_observables_of_a_kept_system_are_kept_too(monkeypatch):
     }
     plain = {name: written_out(f) for name, f in functions.items()}
     y0, kept = start(made(masses_and_field)[0]), Hamiltonian(H, q, p)
+    _kept_system.cache_clear()
     how = {"method": Splitting("verlet"), "step": 0.02, "samples": 3, "precision": "compensated"}
     other = propagate(Hamiltonian(written_out(H), q, p), (0, 1), y0, observables=plain, **how)
     with monkeypatch.context() as patched:

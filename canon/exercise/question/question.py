@@ -291,9 +291,9 @@ def decide(question: Question, deadline: Deadline) -> Verdict:
                 return verdict
             asks = (each for each in otherwise() if not isinstance(each, Determines | Tells))
             other = [decide(each, deadline) for each in asks]
-            if other and all(each.holds for each in other):
-                return all_hold(other, part.name)
-            return replace(verdict, feedback=said)
+            if not other or any(each.fails for each in other):
+                return replace(verdict, feedback=said)
+            return all_hold(other, part.name)  # which may be open
         case SameEquations(claimed, right, unknowns, domain, before=before):
             return same_equations(claimed, right, unknowns, domain, deadline, before)
         case Regular(matrix, name, domain, singular_is):

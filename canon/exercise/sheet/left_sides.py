@@ -83,8 +83,8 @@ _ACTION = re.compile(
 """``∫ p dq``, and the share of it that an action is; repeats are bounded, or blanks are tried in too many ways."""
 _FREQUENCY = re.compile(r"[∂d][EH]/[∂d](?P<action>[JI])")
 """A frequency by its definition."""
-_ENERGY_AND_ONE = 2
-"""Where there are several actions, ∂E/∂J is the frequency of one of them."""
+_OF_ONE_ACTION = 2
+"""Names that depend on others, the energy and one action; of several actions ∂E/∂J would have to say which."""
 _OF_ANY = r"[-−+]?∂[HLFKSRVUW][_0-9]{0,3}/∂[^-−+=∂*/(){}\[\]]{1,20}|\{[^={}]{1,20},H\}"
 """Derivatives of functions that are not given, and the bracket with H."""
 
@@ -308,7 +308,7 @@ def is_definition(said: str, key: str, scope: Scope) -> bool:
     if key == "omega" and (rate := _FREQUENCY.fullmatch(said)) is not None:
         action = rate["action"]
         return not scope.declares(action) or (
-            action in scope.dependent and len(scope.dependent) <= _ENERGY_AND_ONE
+            action in scope.dependent and len(scope.dependent) <= _OF_ONE_ACTION
         )
     names = set(re.findall(r"[A-Z]", said))
     if not names or any(scope.declares(name) for name in names):

@@ -183,7 +183,7 @@ def compile_loop(w: Writer, n: int, *, compensated: bool, carry: int = 0) -> Loo
 
 def compiled_function(w: Writer, name: str, parameters: str, signature: Sequence[object]) -> MachineCode:
     """Compile what was written as one function."""
-    body = w.body()
+    body = w.body()  # first, as it may declare what it calls
     ir = "\n".join([*sorted(w.declarations), f"define void @{name}({parameters}) {{", body, "}"])
     called = [*(f"{function}{suffix}" for function in LIBRARY for suffix in ("", "f", "l")), *HEAP]
     return compiled(ir, name, signature, [function for function in called if f"@{function}(" in ir])

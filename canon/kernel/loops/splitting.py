@@ -149,7 +149,7 @@ class SplittingWriter:
         take = self._moving(0, coefficient)
         if self.loops is None:
             self.evaluate(self.system.velocity, self.n, self.kick_clock, take)
-        elif self.loops.velocity is not None:
+        else:
             write_rolled(self.w, self.loops.velocity, self.w.at(self.y, self.gap), self.kick_clock, take)
         self._advance(self.drift_clock, coefficient)
 

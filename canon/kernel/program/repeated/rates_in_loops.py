@@ -27,12 +27,12 @@ class RatesInLoops:
     Parameters
     ----------
     velocity, force
-        They, where no pairs are summed; None where that is nothing.
+        They, but for the force of pairs; no force where that is all of it.
     pairs
         The force of every pair of rows.
     """
 
-    velocity: Families | None
+    velocity: Families
     force: Families | None
     pairs: PairForces | None
 
@@ -59,7 +59,7 @@ def rates_in_loops(sums: Sequence[RepeatedTerms], t: Symbol, n: int) -> RatesInL
     velocity = [each for each in single if each.reads(n) == {"p"}]
     force = [each for each in single if each.reads(n) == {"q"}]
     return RatesInLoops(
-        families_of_sums(velocity, t, n, negated=False, shift=n) if velocity else None,
-        families_of_sums(force, t, n, negated=True, shift=0) if force else None,
+        families_of_sums(velocity, t, n, negated=False, shift=n),
+        families_of_sums(force, t, n, negated=True, shift=0) if force or pairs is None else None,
         pairs,
     )

@@ -55,7 +55,7 @@ def families_of_sums(
     Parameters
     ----------
     sums
-        Sums over rows, not over pairs, all of coordinates or all of momenta.
+        Sums over rows, not over pairs, all of coordinates or all of momenta; of none of them every derivative is 0.
     t, n
         The symbol of the time, and how many coordinates there are: as many components has the rate.
     negated
@@ -162,6 +162,8 @@ def _alike(
     addends: Sequence[_Addends],
 ) -> list[tuple[tuple[tuple[int, bool], ...], npt.NDArray[np.intp], list[Sequence[int]]]]:
     """Return which families are added up, by which components, and where each finds its addends in the families."""
+    if not addends:
+        return []
     components = np.concatenate([each.components for each in addends])
     kinds = np.repeat(np.arange(len(addends)), [len(each.components) for each in addends])
     rows = np.concatenate([np.arange(len(each.components)) for each in addends])

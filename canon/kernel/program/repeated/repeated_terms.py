@@ -107,8 +107,8 @@ class RepeatedTerms:
 
     def reads(self, n: int) -> set[str]:
         """Return whether q, p or both are read, of states (q, p) of n coordinates."""
-        places = [self.columns[k] for k in self.moving]
-        return {"p" if place >= n else "q" for column in places for place in np.asarray(column).tolist()}
+        of_momenta = {bool(of) for k in self.moving for of in np.unique(np.asarray(self.columns[k]) >= n)}
+        return {"p" if of else "q" for of in of_momenta}
 
 
 @dataclass(frozen=True, eq=False)
