@@ -1,4 +1,7 @@
-"""Compiled loop of a fixed-step method: compiled once, then kept, with the coefficients that it reads."""
+"""Compiled loop of a fixed-step method: compiled once, then kept, with the coefficients that it reads.
+
+What writes the loop of a family is imported when the first loop of that family is asked for.
+"""
 
 from __future__ import annotations
 
@@ -6,28 +9,10 @@ import dataclasses
 import functools
 from typing import TYPE_CHECKING, Any
 
-from canon.flow.fixed_step.gauge_integrals import gauge_shifts
 from canon.flow.fixed_step.partial_step import PartialSteps
 from canon.flow.fixed_step.step_coefficients import step_coefficients
 from canon.flow.method.composition import weights_of_order
-from canon.kernel.discrete_action.galerkin_step import galerkin_loop
-from canon.kernel.llvm.loop import Loop, runge_kutta_loop
 from canon.kernel.llvm.machine_code import simd_bytes
-from canon.kernel.loops.doubled_phase_space import (
-    mixing_loop,
-    projecting_loop,
-)
-from canon.kernel.loops.gauss import gauss_loop
-from canon.kernel.loops.lie_poisson import lie_poisson_loop
-from canon.kernel.loops.nonholonomic_leapfrog import nonholonomic_loop
-from canon.kernel.loops.rattle import rattle_loop
-from canon.kernel.loops.splitting import splitting_loop
-from canon.kernel.magnetic.boris import boris_loop
-from canon.kernel.magnetic.gauge_shifts import gauge_shift_loop
-from canon.kernel.magnetic.magnetic_form import magnetic_form
-from canon.kernel.schemes.perturbed_schemes import corrector
-from canon.kernel.solvable.solvable_loop import solvable_loop
-from canon.kernel.solvable.solvable_parts import Centres, Planets, UnsolvableError, named_part, solvable_part
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -43,6 +28,7 @@ if TYPE_CHECKING:
     from canon.flow.method.solvable_splitting import SolvableSplitting
     from canon.flow.method.variational_method import GalerkinVariational
     from canon.flow.run.sampling_plan import Plan
+    from canon.kernel.llvm.loop import Loop
     from canon.kernel.llvm.number_types import MachineType
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
@@ -230,6 +216,8 @@ def loop_by_solvable_parts(
     UnsolvableError
         H has no such parts, depends on t, or has parameters that differ by orbit.
     """
+    from canon.kernel.solvable.solvable_parts import UnsolvableError
+
     if not system.autonomous:
         raise UnsolvableError(
             "H depends on t: splittings by solvable parts are for H(q, p); use Splitting('kahan-li-8')"
@@ -276,11 +264,15 @@ def _with_lanes(number: MachineType, system: HamiltonEquations, orbits: int, sta
 def _kept_splitting(
     system: HamiltonEquations, stages: int, number: MachineType, *, compensated: bool, kick_first: bool
 ) -> Loop:
+    from canon.kernel.loops.splitting import splitting_loop
+
     return splitting_loop(system, stages, number=number, compensated=compensated, kick_first=kick_first)
 
 
 @functools.lru_cache(maxsize=_KEPT)
 def _kept_runge_kutta(system: HamiltonEquations, number: MachineType, *, compensated: bool) -> Loop:
+    from canon.kernel.llvm.loop import runge_kutta_loop
+
     return runge_kutta_loop(system, number=number, compensated=compensated)
 
 
@@ -288,11 +280,15 @@ def _kept_runge_kutta(system: HamiltonEquations, number: MachineType, *, compens
 def _kept_gauss(
     system: HamiltonEquations, stages: int, number: MachineType, *, compensated: bool, newton: bool
 ) -> Loop:
+    from canon.kernel.loops.gauss import gauss_loop
+
     return gauss_loop(system, stages, compensated=compensated, number=number, newton=newton)
 
 
 @functools.lru_cache(maxsize=_KEPT)
 def _kept_mixing(system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool) -> Loop:
+    from canon.kernel.loops.doubled_phase_space import mixing_loop
+
     return mixing_loop(system, weights, number=number, compensated=compensated)
 
 
@@ -300,11 +296,15 @@ def _kept_mixing(system: HamiltonEquations, weights: int, number: MachineType, *
 def _kept_projecting(
     system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool
 ) -> Loop:
+    from canon.kernel.loops.doubled_phase_space import projecting_loop
+
     return projecting_loop(system, weights, number=number, compensated=compensated)
 
 
 @functools.lru_cache(maxsize=_KEPT)
 def _kept_rattle(system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool) -> Loop:
+    from canon.kernel.loops.rattle import rattle_loop
+
     assert system.holonomic is not None
     return rattle_loop(system, system.holonomic, weights, number=number, compensated=compensated)
 
@@ -313,6 +313,8 @@ def _kept_rattle(system: HamiltonEquations, weights: int, number: MachineType, *
 def _kept_nonholonomic(
     system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool
 ) -> Loop:
+    from canon.kernel.loops.nonholonomic_leapfrog import nonholonomic_loop
+
     assert system.nonholonomic is not None
     return nonholonomic_loop(system, system.nonholonomic, weights, number=number, compensated=compensated)
 
@@ -321,6 +323,8 @@ def _kept_nonholonomic(
 def _kept_galerkin(
     system: HamiltonEquations, degree: int, points: int, number: MachineType, *, compensated: bool
 ) -> Loop:
+    from canon.kernel.discrete_action.galerkin_step import galerkin_loop
+
     assert system.lagrangian is not None
     return galerkin_loop(system, system.lagrangian, degree, points, compensated=compensated, number=number)
 
@@ -329,12 +333,17 @@ def _kept_galerkin(
 def _kept_lie_poisson(
     system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool
 ) -> Loop:
+    from canon.kernel.loops.lie_poisson import lie_poisson_loop
+
     assert system.lie_poisson is not None
     return lie_poisson_loop(system, system.lie_poisson, weights, number=number, compensated=compensated)
 
 
 @functools.lru_cache(maxsize=_KEPT)
 def _kept_boris(system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool) -> Loop:
+    from canon.kernel.magnetic.boris import boris_loop
+    from canon.kernel.magnetic.magnetic_form import magnetic_form
+
     return boris_loop(system, magnetic_form(system), weights, number=number, compensated=compensated)
 
 
@@ -342,6 +351,9 @@ def _kept_boris(system: HamiltonEquations, weights: int, number: MachineType, *,
 def _kept_magnetic(
     system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool
 ) -> Loop:
+    from canon.flow.fixed_step.gauge_integrals import gauge_shifts
+    from canon.kernel.magnetic.gauge_shifts import gauge_shift_loop
+
     return gauge_shift_loop(system, gauge_shifts(system), weights, number=number, compensated=compensated)
 
 
@@ -353,6 +365,10 @@ def _kept_solvable(
     vectors: int,
     units: tuple[Fraction, ...],
 ) -> Loop:
+    from canon.kernel.schemes.perturbed_schemes import corrector
+    from canon.kernel.solvable.solvable_loop import solvable_loop
+    from canon.kernel.solvable.solvable_parts import Centres, Planets, UnsolvableError, named_part, solvable_part
+
     part = solvable_part(system) if method.parts is None else named_part(system, *method.parts)
     if isinstance(part, Planets | Centres) and len({len(body) for body in part.bodies}) > 1:
         raise UnsolvableError(

@@ -123,10 +123,8 @@ def _without_squares(n: Forms, f: Fraction, r: fmpq) -> tuple[Fraction, Fraction
     t = n.tower
     known = t.number(1)
     for square, sigma in n.squares if r.q == 2 else ():
-        quotient, remainder = divmod(f.num, square)
-        while remainder.is_zero() and not quotient.is_zero():
+        while (quotient := t.quotient(f.num, square)) is not None and not quotient.is_zero():
             f, known = Fraction(quotient, f.den), t.times(known, t.power(sigma, int(r.p)))
-            quotient, remainder = divmod(f.num, square)
     return f, known
 
 

@@ -46,7 +46,7 @@ def search_branches(left: Expr, right: Expr, domain: Domain, deadline: float) ->
             break
         try:
             by = cast("Mapping[sp.Basic, Expr]", values)
-            sides = replaced(left, by), replaced(right, by)
+            sides = replaced(left, by, deadline), replaced(right, by, deadline)
         except NoValue:
             continue
         symbols = {s for f in (*sides, *values.values()) for s in by_name(f)}

@@ -67,8 +67,8 @@ def _as_polynomial(n: Forms, a: Fraction) -> fmpq_mpoly | None:
     norm = t.reduce(t.product(b, b) - t.product(t.product(c, c), relation[1]))
     if norm.is_zero():
         return None
-    q, remainder = divmod(t.product(a.num, b - c * t.monomial(k)), norm)
-    return q if remainder.is_zero() and t.reduce(a.num - t.product(q, below)).is_zero() else None
+    q = t.quotient(t.product(a.num, b - c * t.monomial(k)), norm)
+    return q if q is not None and t.reduce(a.num - t.product(q, below)).is_zero() else None
 
 
 def _sharing_factors(known: list[Fraction], a: Fraction) -> list[Fraction]:

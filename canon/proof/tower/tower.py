@@ -165,6 +165,14 @@ class Tower:
                 square = self.product(square, square)
         return total
 
+    def quotient(self, p: fmpq_mpoly, q: fmpq_mpoly) -> fmpq_mpoly | None:
+        """Return p/q where q divides p: at the first term that it cannot divide, division ends."""
+        self.check_time()
+        try:
+            return p / q
+        except DomainError:
+            return None
+
     def factors(self, p: fmpq_mpoly) -> tuple[fmpq, list[tuple[fmpq_mpoly, int]]]:
         """Write p as a number times powers of irreducible factors; a large p stays one factor."""
         self.check_time()
@@ -288,9 +296,8 @@ class Tower:
                 left += [(i, e)] if e > 0 else []
                 continue
             while e > 0 and len(base) <= len(num) <= 2000 and len(base) * len(num) <= self.limits.product:
-                self.check_time()
-                quotient, remainder = divmod(num, base)
-                if not remainder.is_zero():
+                quotient = self.quotient(num, base)
+                if quotient is None:
                     break
                 num, e = quotient, e - 1
             if e > 0:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING, TypeVar, cast
 
 import sympy as sp
@@ -50,20 +51,27 @@ _B = TypeVar("_B", bound=sp.Basic)
 
 
 class NoValue(Exception):
-    """SymPy gives no value to an expression after a substitution, or one too long to write out."""
+    """SymPy gives no value to an expression after a substitution, or one too long to write out or to wait for."""
 
 
-def replaced(expr: _B, by: Mapping[sp.Basic, Expr] | Mapping[sp.Basic, sp.Basic]) -> _B:
+def replaced(
+    expr: _B,
+    by: Mapping[sp.Basic, Expr] | Mapping[sp.Basic, sp.Basic],
+    deadline: float = float("inf"),
+) -> _B:
     """Return ``expr`` after a substitution, every distinct part being rebuilt once.
 
     Raises
     ------
     NoValue
         Where SymPy refuses a part (Max of an imaginary number, a derivative by an expression, …) or would
-        write out a number of very many digits.
+        write out a number of very many digits; and where the deadline, a value of :func:`time.monotonic`, passes
+        between two parts, for of quotients of quotients SymPy asks in exponential time whether they are infinite.
     """
     done: dict[sp.Basic, sp.Basic] = {}
     for part in anatomy([expr]).parts:  # what a part consists of comes before it
+        if time.monotonic() > deadline:
+            raise NoValue
         inner = tuple(done[a] for a in part.args)
         if part in by:
             done[part] = by[part]
