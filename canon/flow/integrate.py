@@ -1,22 +1,18 @@
-"""Integration of a task by the engine of its method, from the start or from an earlier run's end."""
+"""Integration of a task by the engine of its method, from the start or from an earlier run's end.
+
+An engine is imported when the first motion by it is asked for.
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from canon.flow.adaptive.dop853 import dop853_motion
-from canon.flow.adaptive.taylor_motion import taylor_motion
-from canon.flow.fixed_step.compiled_loop import compiled_loop
-from canon.flow.fixed_step.constraint_trouble import told_of_constraints
-from canon.flow.fixed_step.fixed_steps import fixed_steps
-from canon.flow.fixed_step.statistics import loop_observables
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS, HEYOKA, SCIPY, Engine
 from canon.flow.method.number_formats import fixed_precision
 from canon.flow.run.event import prepared_events
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.run.samples import joined, side_by_side
-from canon.flow.transformed.transformed_motion import transformed_motion
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -79,6 +75,8 @@ def _one_by_one(task: Task, progress: Callable[[float], None], so_far: Samples |
 def _in_fictitious_time(
     task: Task, method: TimeTransformed, progress: Callable[[float], None], so_far: Samples | None
 ) -> Samples:
+    from canon.flow.transformed.transformed_motion import transformed_motion
+
     frame = task.fictitious
     assert frame is not None
     return transformed_motion(
@@ -89,6 +87,11 @@ def _in_fictitious_time(
 def _in_fixed_steps(
     task: Task, method: FixedStep, progress: Callable[[float], None], so_far: Samples | None
 ) -> Samples:
+    from canon.flow.fixed_step.compiled_loop import compiled_loop
+    from canon.flow.fixed_step.constraint_trouble import told_of_constraints
+    from canon.flow.fixed_step.fixed_steps import fixed_steps
+    from canon.flow.fixed_step.statistics import loop_observables
+
     states, events = _states(task, so_far), prepared_events(task.system, task.events)
     loop = compiled_loop(task.system, method, fixed_precision(task.precision), states[0].shape[1])
     watch = None
@@ -113,6 +116,8 @@ def _in_fixed_steps(
 def _by_heyoka(
     task: Task, method: Taylor, progress: Callable[[float], None], so_far: Samples | None
 ) -> Samples:
+    from canon.flow.adaptive.taylor_motion import taylor_motion
+
     states, events = _states(task, so_far), prepared_events(task.system, task.events)
     precision, dense = task.precision or method.engine.usual_precision, task.dense
     made = taylor_motion(
@@ -125,6 +130,8 @@ def _by_heyoka(
 def _by_scipy(
     task: Task, method: DOP853, progress: Callable[[float], None], so_far: Samples | None
 ) -> Samples:
+    from canon.flow.adaptive.dop853 import dop853_motion
+
     (states, _), events = _states(task, so_far), prepared_events(task.system, task.events)
     made = dop853_motion(task.system, states, task.plan, method, progress, so_far, task.max_step, events)
     return joined(so_far, made)

@@ -1,12 +1,26 @@
-"""Engines of methods: what integrates the motion, whether it takes a step, and the precisions it has."""
+"""Engines of methods: what integrates the motion, of which systems, whether it takes a step, and in which precisions."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 from canon.flow.method.number_formats import ADAPTIVE, FIXED
 
-__all__ = ["FICTITIOUS_TIME", "FIXED_STEPS", "HEYOKA", "SCIPY", "Engine"]
+if TYPE_CHECKING:
+    from canon.flow.method.method import Method
+
+__all__ = ["FICTITIOUS_TIME", "FIXED_STEPS", "HEYOKA", "SCIPY", "Engine", "needs_hamiltonian"]
+
+_FOR_ANY_SYSTEM = (
+    "taylor", "dop853", "rk4", "gauss", "rattle", "nonholonomic_leapfrog", "lie_poisson", "galerkin",
+)  # fmt: skip
+"""Families of methods that need no Hamiltonian."""
+
+
+def needs_hamiltonian(method: Method) -> bool:
+    """Tell whether a method is made for Hamiltonians and applies to nothing else."""
+    return method.family not in _FOR_ANY_SYSTEM
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,6 @@ from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import time
 from canon.expression.symbols.user_input import given_expression, given_symbols
 from canon.flow.method.method import Splitting
-from canon.mechanics.canonical.transformation import CanonicalTransformation
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 
 if TYPE_CHECKING:
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
 
     from canon.kernel.program.hamilton_equations import HamiltonEquations
+    from canon.mechanics.canonical.transformation import CanonicalTransformation
 
 __all__ = ["DRIFT_AND_KICK", "KICK_AND_DRIFT", "HamiltonianMap", "check_whole", "kicked"]
 

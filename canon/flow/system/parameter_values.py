@@ -11,14 +11,15 @@ import sympy as sp
 
 from canon.frozen_mapping import FrozenMapping
 from canon.kernel.program.hamilton_equations import exact_number
+from canon.mechanics.algebra.substitution import symbols_within
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
     from fractions import Fraction
 
-    from sympy import Symbol
+    from sympy import Expr, Symbol
 
-__all__ = ["SpareParameters", "check_given", "check_known", "check_parameters"]
+__all__ = ["SpareParameters", "check_given", "check_known", "check_parameters", "symbols_in"]
 
 _KINDS = ("positive", "negative", "nonnegative", "nonpositive", "nonzero", "integer")
 
@@ -132,3 +133,9 @@ def _missing_kind(symbol: Symbol, value: Fraction) -> str:
     number: Any = sp.Rational(value)
     kinds = (kind for kind in _KINDS if getattr(symbol, f"is_{kind}") and not getattr(number, f"is_{kind}"))
     return next(kinds, "")
+
+
+@functools.lru_cache(maxsize=256)
+def symbols_in(f: Expr) -> frozenset[Any]:
+    """Return the symbols of an expression, as of an earlier call."""
+    return symbols_within(f, {})

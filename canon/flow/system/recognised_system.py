@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -13,8 +12,8 @@ from canon.flow.equations.listed_equations import field_motion, heyoka_field, is
 from canon.flow.equations.poisson_motion import poisson_motion
 from canon.flow.equations.quasi_velocity_motion import appell_motion, newton_euler_motion, quasi_motion
 from canon.flow.equations.routhian_motion import routhian_motion, routhian_state
+from canon.flow.system.parameter_values import symbols_in
 from canon.flow.system.written_with_signs import written_with_signs
-from canon.mechanics.algebra.substitution import symbols_within
 from canon.mechanics.hamilton.poisson_system import PoissonSystem
 from canon.mechanics.hamilton.traced_function import is_rates_function
 from canon.mechanics.hamilton.vector_field import VectorField
@@ -58,7 +57,7 @@ if TYPE_CHECKING:
         | str
     )
 
-__all__ = ["RecognisedSystem", "recognised", "symbols_in"]
+__all__ = ["RecognisedSystem", "recognised"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,9 +187,3 @@ def _with(
     used = frozenset[Any]().union(*map(symbols_in, said))
     parameters = sorted(used - {*state, t, *unknown}, key=lambda s: s.name)
     return RecognisedSystem(tuple(state), t, tuple(parameters), derived)
-
-
-@functools.lru_cache(maxsize=256)
-def symbols_in(f: Expr) -> frozenset[Any]:
-    """Return the symbols of an expression, as of an earlier call."""
-    return symbols_within(f, {})

@@ -8,9 +8,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, cast
 
-from canon.mechanics.at_scale.constrained import constrained, constrained_motion
-from canon.mechanics.at_scale.second_order import derivation_of_lagrangian
-
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
@@ -168,6 +165,9 @@ def _placed(scene: SceneLike, name: str | None, values: Mapping[Symbol | str, An
         raise ValueError(f"this start of {scene.name} is given by momenta: give y0 as (q, q̇)")
     if not scene.is_constrained:
         return [*start.q, *start.v]
+    from canon.mechanics.at_scale.constrained import constrained, constrained_motion
+    from canon.mechanics.at_scale.second_order import derivation_of_lagrangian
+
     system = scene.constrained
     equations = constrained(
         derivation_of_lagrangian(system.lagrangian), system.holonomic, system.nonholonomic

@@ -13,7 +13,8 @@ from canon.flow.method.engine import FICTITIOUS_TIME
 from canon.flow.method.method_text import method_of
 from canon.flow.propagation import propagate
 from canon.flow.run.observables_along import AccuracyWarning
-from canon.flow.system_request import is_hamiltonian, needs_hamiltonian
+from canon.flow.method.engine import needs_hamiltonian
+from canon.flow.system_request import is_hamiltonian
 from canon.scene.scene import Scene, near
 from canon.study.errors import StudyError
 from canon.study.method_choice.candidate import Candidate, candidate_methods
