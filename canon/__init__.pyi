@@ -33,8 +33,8 @@ from .mechanics.hamilton.bracket import lagrange_bracket as lagrange_bracket
 from .mechanics.hamilton.bracket import lie_bracket as lie_bracket
 from .mechanics.hamilton.bracket import poisson_bracket as poisson_bracket
 from .mechanics.hamilton.hamiltonian import Hamiltonian as Hamiltonian
-from .mechanics.hamilton.hamiltonian import hamiltonian as hamiltonian
-from .mechanics.hamilton.hamiltonian import lagrangian as lagrangian
+from .mechanics.hamilton.legendre_pair import hamiltonian as hamiltonian
+from .mechanics.hamilton.legendre_pair import lagrangian as lagrangian
 from .mechanics.hamilton.pfaffian_form import bilinear_covariant as bilinear_covariant
 from .mechanics.hamilton.symmetry import is_constant_of_motion as is_constant_of_motion
 from .mechanics.hamilton.symmetry import noether_charge as noether_charge

@@ -33,7 +33,6 @@ if TYPE_CHECKING:
 __all__ = ["any_task", "course_before_start", "is_hamiltonian", "refuse_contacts", "task_from"]
 
 
-
 def is_hamiltonian(system: Any) -> bool:
     """Tell whether a system has H, q, p and t, as :class:`canon.flow.run.hamiltonian_system.HamiltonianSystem` says."""
     return all(hasattr(system, name) for name in ("H", "q", "p", "t"))

@@ -50,11 +50,11 @@ from .hamilton.bracket import poisson_bracket as poisson_bracket
 from .hamilton.bracket import poisson_matrix as poisson_matrix
 from .hamilton.bracket import symplectic_unit as symplectic_unit
 from .hamilton.hamiltonian import Hamiltonian as Hamiltonian
-from .hamilton.hamiltonian import LegendreError as LegendreError
-from .hamilton.hamiltonian import hamiltonian as hamiltonian
-from .hamilton.hamiltonian import has_hamiltonian as has_hamiltonian
-from .hamilton.hamiltonian import is_hamiltonian_of as is_hamiltonian_of
-from .hamilton.hamiltonian import lagrangian as lagrangian
+from .hamilton.legendre_pair import LegendreError as LegendreError
+from .hamilton.legendre_pair import hamiltonian as hamiltonian
+from .hamilton.legendre_pair import has_hamiltonian as has_hamiltonian
+from .hamilton.legendre_pair import is_hamiltonian_of as is_hamiltonian_of
+from .hamilton.legendre_pair import lagrangian as lagrangian
 from .hamilton.moving_bodies import MovingBody as MovingBody
 from .hamilton.moving_bodies import moving_bodies as moving_bodies
 from .hamilton.pfaffian_form import bilinear_covariant as bilinear_covariant

@@ -177,7 +177,7 @@ class Scene:
         if self.L_of is not None:
             return Lagrangian(self.L_of(self.symbols), self.q, forces=forces)
         if self.bodies_of is None:
-            from canon.mechanics.hamilton.hamiltonian import lagrangian
+            from canon.mechanics.hamilton.legendre_pair import lagrangian
 
             return lagrangian(self.hamiltonian)
         from canon.mechanics.lagrange.force import lagrangian_of_bodies
@@ -214,7 +214,8 @@ class Scene:
                 f"{self.name} has constraints or forces without potential, so no Hamiltonian says how it moves; "
                 "take its lagrangian, or give its name to propagate()"
             )
-        from canon.mechanics.hamilton.hamiltonian import Hamiltonian, hamiltonian
+        from canon.mechanics.hamilton.hamiltonian import Hamiltonian
+        from canon.mechanics.hamilton.legendre_pair import hamiltonian
 
         if self.H_of is None:
             return hamiltonian(self.lagrangian, self.p)

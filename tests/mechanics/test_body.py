@@ -4,7 +4,7 @@ import pytest
 import sympy as sp
 
 from canon.expression.symbols.symbol import coordinates, parameters, time, time_derivative
-from canon.mechanics.hamilton.hamiltonian import hamiltonian
+from canon.mechanics.hamilton.legendre_pair import hamiltonian
 from canon.mechanics.hamilton.symmetry import have_same_equations
 from canon.mechanics.lagrange.body import (
     Particle,

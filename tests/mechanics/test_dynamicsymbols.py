@@ -9,7 +9,8 @@ from canon.mechanics.algebra.dynamicsymbols import plain
 from canon.mechanics.at_scale.constrained import constrained
 from canon.mechanics.at_scale.first_order import canonical_derivation
 from canon.mechanics.at_scale.second_order import derivation, derivation_of_lagrangian
-from canon.mechanics.hamilton.hamiltonian import Hamiltonian, hamiltonian, is_hamiltonian_of
+from canon.mechanics.hamilton.hamiltonian import Hamiltonian
+from canon.mechanics.hamilton.legendre_pair import hamiltonian, is_hamiltonian_of
 from canon.mechanics.hamilton.symmetry import (
     is_constant_of_motion,
     is_gauge_equivalent,

@@ -6,15 +6,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from canon.expression.symbols.symbol import coordinates, parameters, time
-from canon.mechanics.hamilton.hamiltonian import (
-    Hamiltonian,
+from canon.mechanics.hamilton.hamiltonian import Hamiltonian
+from canon.mechanics.hamilton.legendre import is_dual
+from canon.mechanics.hamilton.legendre_pair import (
     LegendreError,
     hamiltonian,
     has_hamiltonian,
     is_hamiltonian_of,
     lagrangian,
 )
-from canon.mechanics.hamilton.legendre import is_dual
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.domain.domain import Domain
 from canon.proof.vanish import vanishes

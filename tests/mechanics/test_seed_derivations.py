@@ -4,7 +4,7 @@ import pytest
 import sympy as sp
 
 from canon.expression.symbols.symbol import coordinates, parameters, time, time_derivative
-from canon.mechanics.hamilton.hamiltonian import hamiltonian
+from canon.mechanics.hamilton.legendre_pair import hamiltonian
 from canon.mechanics.lagrange.body import Particle
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 from canon.mechanics.lagrange.constraint_system import is_integrable

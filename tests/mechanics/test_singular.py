@@ -5,8 +5,8 @@ import sympy as sp
 
 from canon.expression.symbols.symbol import coordinates, parameters, time_derivative
 from canon.mechanics.algebra.linear import SingularMatrixError
-from canon.mechanics.hamilton.hamiltonian import hamiltonian
 from canon.mechanics.hamilton.legendre import LegendreError
+from canon.mechanics.hamilton.legendre_pair import hamiltonian
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.reduction.singular import singularity
 from canon.proof.domain.domain import Domain

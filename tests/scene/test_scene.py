@@ -11,7 +11,7 @@ import pytest
 import sympy as sp
 
 from canon.expression.symbols.symbol import time
-from canon.mechanics.hamilton.hamiltonian import lagrangian
+from canon.mechanics.hamilton.legendre_pair import lagrangian
 from canon.proof.vanish import equal, vanishes
 from canon.scene import SCENES, Condition, Parameter, SceneError, Start, find, names
 from canon.scene.equations_of_motion import scene_equations

@@ -16,8 +16,9 @@ from canon.expression.symbols.symbol import Rate, acceleration, velocity
 from canon.mechanics.algebra.constraint_manifold import on_manifold, transported
 from canon.mechanics.algebra.possible_motion import motion_is_continuous, motion_is_real
 from canon.mechanics.algebra.substitution import substitute
-from canon.mechanics.hamilton.hamiltonian import Hamiltonian, hamiltonian
+from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.hamilton.legendre import where_root_is_real
+from canon.mechanics.hamilton.legendre_pair import hamiltonian
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -367,7 +367,13 @@ def _kept_solvable(
 ) -> Loop:
     from canon.kernel.schemes.perturbed_schemes import corrector
     from canon.kernel.solvable.solvable_loop import solvable_loop
-    from canon.kernel.solvable.solvable_parts import Centres, Planets, UnsolvableError, named_part, solvable_part
+    from canon.kernel.solvable.solvable_parts import (
+        Centres,
+        Planets,
+        UnsolvableError,
+        named_part,
+        solvable_part,
+    )
 
     part = solvable_part(system) if method.parts is None else named_part(system, *method.parts)
     if isinstance(part, Planets | Centres) and len({len(body) for body in part.bodies}) > 1:

@@ -1,4 +1,4 @@
-"""Engines of methods: what integrates the motion, of which systems, whether it takes a step, and in which precisions."""
+"""Engines of methods: what integrates, which systems, by steps of which kind and in which precisions."""
 
 from __future__ import annotations
 

@@ -112,6 +112,8 @@ class HamiltonianMap:
     @property
     def transformation(self) -> CanonicalTransformation:
         """The map as a transformation, which can be proved to be canonical."""
+        from canon.mechanics.canonical.transformation import CanonicalTransformation
+
         n = len(self.q)
         return CanonicalTransformation(self.q, self.p, self.images[:n], self.images[n:])
 

@@ -11,7 +11,13 @@ import numpy as np
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
-from canon.flow.checked_request import course_with, functions_by_name, parted_by_orbit, refuse_swapped, two_ends
+from canon.flow.checked_request import (
+    course_with,
+    functions_by_name,
+    parted_by_orbit,
+    refuse_swapped,
+    two_ends,
+)
 from canon.flow.equations.bounce import with_bounces
 from canon.flow.equations.first_order_motion import moving_system
 from canon.flow.equations.lagrangian_motion import SPAN

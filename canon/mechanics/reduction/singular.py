@@ -52,7 +52,7 @@ class Singularity:
         The coordinates.
     hamiltonian
         The canonical Hamiltonian Σ p q̇ − L on the primary constraints; None where L is regular
-        (:func:`canon.mechanics.hamilton.hamiltonian.hamiltonian` gives it then) or it was not found in closed form.
+        (:func:`canon.mechanics.hamilton.legendre_pair.hamiltonian` gives it then) or it was not found in closed form.
     """
 
     rank: int

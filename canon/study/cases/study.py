@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 from canon.expression.symbols.user_input import counted
 from canon.flow.equations.listed_equations import is_heyoka_system
+from canon.flow.method.engine import needs_hamiltonian
 from canon.flow.method.method_text import method_from, method_of
 from canon.flow.system.recognised_system import recognised
-from canon.flow.method.engine import needs_hamiltonian
 from canon.flow.system_request import is_hamiltonian
 from canon.given_file import bytes_of, tables_of
 from canon.scene import Scene, find

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from canon.display import preformatted
 from canon.flow.method.energy_keeping_method import AverageVectorField
-from canon.flow.method.engine import FICTITIOUS_TIME
+from canon.flow.method.engine import FICTITIOUS_TIME, needs_hamiltonian
 from canon.flow.method.method_text import method_of
 from canon.flow.propagation import propagate
 from canon.flow.run.observables_along import AccuracyWarning
-from canon.flow.method.engine import needs_hamiltonian
 from canon.flow.system_request import is_hamiltonian
 from canon.scene.scene import Scene, near
 from canon.study.errors import StudyError
