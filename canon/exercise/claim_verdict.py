@@ -65,6 +65,12 @@ def questions(reading: Reading) -> Iterator[Question]:
     InvalidClaim
         Where the claim does not say something that could be judged.
     """
+    yield from _of_one_sign(reading)
+    if reading.lower is not None:
+        yield from _of_one_sign(reading.lower)
+
+
+def _of_one_sign(reading: Reading) -> Iterator[Question]:
     yield from other_variables(reading)
     judge_of_kind = named_function("canon.exercise.judges", reading.kind.judge)
     inside = {"ask": questions} if reading.kind.about else {}
@@ -152,6 +158,8 @@ def examined(reading: Reading, deadline: Deadline) -> Finding:
     named, held = "", 0
     try:
         answered += without_value(reading, deadline)
+        if reading.lower is not None:
+            answered += without_value(reading.lower, deadline)
         asks = () if any(verdict.fails for verdict in answered) else questions(reading)
         for number, question in enumerate(asks):
             if isinstance(question, Determines) and not question.wanted:

@@ -17,6 +17,7 @@ from canon.exercise.sheet.kept_parses import parsed
 from canon.exercise.sheet.kind import Kind, Shape
 from canon.exercise.sheet.kinds import kind_of
 from canon.exercise.sheet.sheet import Claim, ClaimError
+from canon.exercise.sheet.signs_apart import signs_apart
 from canon.exercise.sheet.typed_answers import typed_answers
 from canon.expression.parse import (
     LanguageError,
@@ -67,6 +68,8 @@ class Reading:
         Equations between the sides of chains, each with the key under which it stands.
     passed
         What was passed over in reading left sides.
+    lower
+        The same claim with the lower signs, where ``±`` stands in its answer and this is that of the upper ones.
     units
         The unit behind a value, by its place in the claim.
     names
@@ -85,6 +88,7 @@ class Reading:
     claim: Claim
     links: tuple[Link, ...] = ()
     passed: tuple[str, ...] = ()
+    lower: Reading | None = None
     units: Mapping[str, str] = field(default_factory=lambda: FrozenMapping({}))
     names: Mapping[str, Symbol] = field(default_factory=lambda: FrozenMapping({}))
     instead: Mapping[str, Expr] = field(default_factory=lambda: FrozenMapping({}))
@@ -99,12 +103,11 @@ class Reading:
         InvalidClaim
             Where a left side contradicts the question.
         """
-        written = cls(claim)
-        plain = typed_answers(claim, written.scope, written.error)
-        keys = FrozenMapping(plain.keys)
-        return cls(
-            replace(claim, keys=keys), tuple(plain.links), tuple(plain.passed), FrozenMapping(plain.units)
-        )
+        upper, *lower = (_plain(each) for each in signs_apart(claim, cls(claim).error))
+        if not lower:
+            return upper
+        told = "± is read as two answers, of the upper signs and of the lower, and both must be right"
+        return replace(upper, lower=lower[0], passed=(*upper.passed, told))
 
     def error(self, key: str, error: LanguageError) -> InvalidClaim:
         """Return the error of a text under a key."""
@@ -365,6 +368,19 @@ class Reading:
         found = sorted(str(rate) for rate in said.atoms(Rate))
         if found:
             self.fault(key, f"should be a function of q, p and t; eliminate {', '.join(found)}")
+
+
+def _plain(claim: Claim) -> Reading:
+    """Return a claim with every text in plain form."""
+    written = Reading(claim)
+    plain = typed_answers(claim, written.scope, written.error)
+    keys = FrozenMapping(plain.keys)
+    return Reading(
+        replace(claim, keys=keys),
+        tuple(plain.links),
+        tuple(plain.passed),
+        units=FrozenMapping(plain.units),
+    )
 
 
 _RATES_TOO = ("L", "domain", "q_dot", "p_dot", "solution")

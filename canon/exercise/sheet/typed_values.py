@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     _Fault = Callable[[str, LanguageError], Exception]
 
-__all__ = ["Value", "both_signs", "signed_tables", "typed_values", "values_under"]
+__all__ = ["SIGNS", "Value", "both_signs", "signed_tables", "typed_values", "values_under"]
 
 MOST_VALUES = 100
 """Most values in one field."""
@@ -46,7 +46,7 @@ _GROUPS = re.compile(
 """Figures in groups of three, with gaps as the SI brochure has it (§5.4.4), or with commas."""
 _STOP = re.compile(r"(?<=[A-Za-zΩ°²³)}])\s?\.\s*$")
 """The full stop of a sentence, behind a unit."""
-_SIGNS = re.compile(r"\\pm(?![A-Za-z])|\\mp(?![A-Za-z])|±|∓|\+/[-−]")
+SIGNS = re.compile(r"\\pm(?![A-Za-z])|\\mp(?![A-Za-z])|±|∓|\+/[-−]")
 _ABOUT = re.compile(r"\b(?:about|approximately|approx\.?|roughly|ca\.|circa)(?=\s*[-0-9.])")
 _ARC = re.compile(r"(?i)arc|(?<![a-z])a(?:cos|sin|tan)|(?:cos|sin|tan)(?:⁻¹|\^\{?\(?-1)")
 """Inverse functions, whose values are angles."""
@@ -81,7 +81,7 @@ def both_signs(text: str) -> tuple[str, ...]:
         )
     if found := re.search(r"\+[-−]", text):
         raise LanguageError(text, found.start() + 1, "is this ±, or a minus?", "write ± or -")
-    signs = list(_SIGNS.finditer(text))
+    signs = list(SIGNS.finditer(text))
     if not signs:
         return (text,)
     if len([sign for sign in signs if sign.group() not in ("∓", "\\mp")]) > 1:
@@ -92,7 +92,7 @@ def both_signs(text: str) -> tuple[str, ...]:
         def chosen(sign: re.Match[str]) -> str:
             return (minus if sign.group() in ("∓", "\\mp") else plus).ljust(len(sign.group()))
 
-        return _SIGNS.sub(chosen, text)
+        return SIGNS.sub(chosen, text)
 
     return with_sign("+", "-"), with_sign("-", "+")
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.flow.system.parameter_values import SpareParameters
-from canon.flow.system.recognised_system import recognised
 from canon.flow.system.scene_as_system import is_scene, opened
 from canon.flow.system.start_of_motion import state_in_order
 from canon.flow.system_request import is_hamiltonian
@@ -121,6 +120,8 @@ def variables_of(system: Any) -> tuple[tuple[Symbol, ...], Symbol]:
         system = opened(system, (), {}).system
     if is_hamiltonian(system):
         return (*system.q, *system.p), system.t
+    from canon.flow.system.recognised_system import recognised  # only here: it loads what derives equations
+
     found = recognised(system)
     return found.state, found.t
 
