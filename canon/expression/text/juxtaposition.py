@@ -126,7 +126,8 @@ class Reader(FactorParser):
         power_of = isinstance(bare, Power) and isinstance(bare.exponent, Number) and is_function(self)
         # R^2(…) is a product by hand; x**2(…) is code that lacks a sign.
         bracket = token.text == "(" and last.kind == "number" and self.tokens[self.at - 2].text == "^"
-        if exponent and token.tight and self.bare_end != self.at and not (power_of or bracket):
+        beyond = power_of or bracket or (last.kind == "number" and self.is_raised_too(token))
+        if exponent and token.tight and self.bare_end != self.at and not beyond:
             raise self.fault(
                 "does this still belong to the exponent?", "put a space or * before it, or brackets"
             )
@@ -141,6 +142,11 @@ class Reader(FactorParser):
         if token.text in CLOSING and last.kind == "name":
             self.no_value(token, last, factor.base if isinstance(factor, Power) else factor)
         return factor
+
+    def is_raised_too(self, token: Token) -> bool:
+        """Tell whether a name is raised as the factor before it was: w^2q^2 is a product, w^2q may be none."""
+        sign = self.tokens[self.at + 1]
+        return token.kind == "name" and sign.tight and sign.text in ("^", "**") and not is_function(self)
 
     def alone(self, last: Token) -> bool:
         """Tell whether a function was taken of one angle that moves, which nobody multiplies inside."""
