@@ -126,8 +126,8 @@ class Builder:
                 "one or two primes after a coordinate; for a function write Derivative(f(t), t)",
             )
         if node.text in self.scope.functions:
-            arguments = ", ".join(self.scope.functions[node.text])
-            self.refuse(node, f"{node.text} is a function", f"write {node.text}({arguments})")
+            variables = tuple(syntax.Name(name, 0, node.column) for name in self.scope.functions[node.text])
+            return self.call(syntax.Call(node.text, variables, node.column))  # V where V(x) is declared
         if node.text in CONSTANTS:
             return CONSTANTS[node.text]
         if node.text == "i" and not self.scope.declares("I"):

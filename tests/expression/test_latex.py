@@ -510,7 +510,6 @@ FAULTS = [
     (r"$V'(a,b)", 2, "with respect to what"),
     (r"$U'(x,y)", 2, "with respect to what"),
     (r"$\dot V", 2, "function of the time"),
-    (r"$a + V", 6, "V is a function"),
     (r"$a + V(x,y)", 6, "1 argument"),
     (r"$a + \sin(x, y)", 6, "1 argument"),
     (r"$(a, b)", 2, "pair"),

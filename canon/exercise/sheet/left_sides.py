@@ -78,11 +78,16 @@ _DEFINITIONS: Mapping[str, str] = {
 _ACTION = re.compile(
     r"(?:(?P<share>\\[dt]?frac\s?\{?1\}?\s?\{\s?2\s?\\pi\s?\}|\(?1/\(?2\s?\*?\s?(?:π|pi|\\pi)\)?\)?)"
     r"(?:\s|\\[,;: ]|\*){0,9})?(?:\\o?int|[∫∮])\s{0,9}p(?:_\\?\w{1,9}|_\{\\?\w{1,9}\})?(?:\s|\\[,;: ]){0,9}"
-    r"(?:\\mathrm\s?\{d\}|\\dd|d)\s{0,9}\\?\w{1,9}"
+    r"(?:\\mathrm\s?\{d\}|\\dd|d)\s{0,9}\\?\w{1,9}(?P<less>\s{0,9}[-−]\s{0,9}\w{1,9}(?:\s|\*){0,9}t)?"
 )
-"""``∫ p dq``, and the share of it that an action is; repeats are bounded, or blanks are tried in too many ways."""
+"""``∫ p dq``, for S less ``E t``, and the share of it that an action is; repeats are bounded, or blanks are tried in too many ways."""
 _FREQUENCY = re.compile(r"[∂d][EH]/[∂d](?P<action>[JI])")
 """A frequency by its definition."""
+_SEPARATED = {
+    "S": re.compile(r"W(?:\([^()=]{1,40}\))?-\w{1,9}\*?t"),
+    "W": re.compile(r"W_\{?\w{1,9}\}?(?:\([^()=]{1,40}\))?(?:\+W_\{?\w{1,9}\}?(?:\([^()=]{1,40}\))?){1,9}"),
+}
+"""Complete integrals by their parts, ``W - E t`` and ``W_r(r) + W_φ(φ)``."""
 _OF_ONE_ACTION = 2
 """Names that depend on others, the energy and one action; of several actions ∂E/∂J would have to say which."""
 _OF_ANY = r"[-−+]?∂[HLFKSRVUW][_0-9]{0,3}/∂[^-−+=∂*/(){}\[\]]{1,20}|\{[^={}]{1,20},H\}"
@@ -310,6 +315,8 @@ def is_definition(said: str, key: str, scope: Scope) -> bool:
         return not scope.declares(action) or (
             action in scope.dependent and len(scope.dependent) <= _OF_ONE_ACTION
         )
+    if key in _SEPARATED and not scope.declares("W") and _SEPARATED[key].fullmatch(said):
+        return True
     names = set(re.findall(r"[A-Z]", said))
     if not names or any(scope.declares(name) for name in names):
         return False
@@ -329,7 +336,9 @@ def is_action(text: str, key: str) -> bool:
     if key not in ("W", "S") and key.rstrip("0123456789_") != "J":
         return False
     found = _ACTION.fullmatch(text.strip(" $"))
-    return found is not None and (found["share"] is None) == (key in ("W", "S"))
+    if found is None or (found["less"] is not None and key != "S"):
+        return False
+    return (found["share"] is None) == (key in ("W", "S"))
 
 
 def is_of_another(said: str) -> bool:

@@ -29,6 +29,7 @@ from canon.exercise.sheet.left_sides import (
     is_of_another,
     label_of,
 )
+from canon.exercise.sheet.quantities.given_functions import key_at
 from canon.exercise.sheet.typed_values import signed_tables, values_under
 from canon.exercise.sheet.written_answers import WrittenAnswers
 from canon.expression.parse import LanguageError, parse_expression
@@ -48,6 +49,8 @@ __all__ = ["Link", "TypedAnswers", "typed_answers"]
 
 _EQUATIONS = ("claim", "constraints", "restrict", "equations", "implicit", "leaves", "integrals", "boundary")
 _UNTOUCHED = ("domain", "class")
+_BY_ENERGY = ("I", "J", "omega")
+"""Keys of what books give as a function of the energy."""
 
 
 class Link(NamedTuple):
@@ -202,7 +205,7 @@ class _Plain:
         first, *others = self.without_name_of_bracket(place, next(iter(statements)).sides, asked)
         sides = [first, *(side for side in others if not self.is_constant(place, side))]
         if len(sides) == 1:
-            return first.text
+            return self.written_out(place, first)
         self.refuse_lagrangian(place, text, sides[0])
         if not self.is_asked(sides[0], asked) and self.is_asked(sides[-1], asked):
             sides = sides[::-1]  # p²/2m = T = H
@@ -240,13 +243,27 @@ class _Plain:
                 made = self.sides.origin(place, side, sides[-1])
                 self.found.links += [Link(place, each, each.partition(" = ")[0]) for each in made]
             else:
-                self.read(place, text, side, asked)
+                if self.written_out(place, side) == side.text:
+                    self.read(place, text, side, asked)
                 readable.append(side)
         readable.append(sides[-1])
-        self.found.links += [
-            Link(place, field_texts.equation_between(a, b), a.text) for a, b in pairwise(readable)
-        ]
-        return sides[-1].text
+        self.found.links += [self.link(place, a, b) for a, b in pairwise(readable)]
+        return self.written_out(place, sides[-1])
+
+    def link(self, place: str, a: Side, b: Side) -> Link:
+        """Return the equation between two sides of a chain, H put in where they are said by it."""
+        left, right = self.written_out(place, a), self.written_out(place, b)
+        if (left, right) == (a.text, b.text):
+            return Link(place, field_texts.equation_between(a, b), a.text)
+        plain = (str(parse_expression(made, self.scope)) for made in (left, right))
+        return Link(place, " = ".join(plain), left)
+
+    def written_out(self, place: str, side: Side) -> str:
+        """Return the text of an answer, with H put in where an action, a frequency or an invariant is said by it."""
+        if key_at(place) not in _BY_ENERGY or not re.search(r"[HE]", side.text) or self.sides.can_read(side):
+            return side.text
+        said = self.sides.given(place).put_in(side.text)
+        return side.text if said is None else str(said)
 
     def read(self, place: str, text: str, side: Side, asked: Quantity) -> None:
         """Refuse a side that is neither a name of the answer nor an expression."""

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from canon.exercise.sheet import field_texts
@@ -92,7 +92,8 @@ class WrittenAnswers:
             return label in names or any(is_asked(label, each, self.sides.scope) for each in asked)
 
         try:
-            found = without_abbreviations(texts, self.sides.scope, is_asked_for)
+            scope = replace(self.sides.scope, quadratures=key in self.kind.quadratures)
+            found = without_abbreviations(texts, scope, is_asked_for)
         except LanguageError:  # it is told where the answer is read
             return value
         if found is None or (found.unused and "multipliers" in self.sides.keys):  # T = 17 m1 may be one

@@ -1,8 +1,8 @@
 r"""Ranges in LaTeX: ``\int_0^{2\pi} \sin^2\theta\,d\theta``, ``\sum_{i=1}^{3} p_i^2``, found before words are read.
 
-An integral goes as far as its differential, a sum as far as the next plus or minus outside brackets; one behind which
-its index goes on is refused. Each becomes one sign of the text, its tree is kept beside it, and every column stays
-where it was.
+An integral goes as far as its differential, or, where that comes first, to the next plus or minus outside brackets, as
+a sum does; one behind which its variable or index goes on is refused. Each becomes one sign of the text, its tree is
+kept beside it, and every column stays where it was. ``\int^q f(q')\,dq'`` is the integral over q without limits.
 """
 
 from __future__ import annotations
@@ -41,12 +41,16 @@ _NUMBER = re.compile(r"\s*(\d+)\s*")
 
 @dataclass(frozen=True, slots=True)
 class _Operator:
-    """An integral, sum or product sign with the places of its limits, and where they end; an integral may have none."""
+    """An integral, sum or product sign with the places of its limits, and where they end; an integral may have none.
+
+    ``upto`` is the place of the upper limit of an integral that has no other.
+    """
 
     sign: str
     at: int
     limits: tuple[tuple[int, int], ...]
     end: int
+    upto: tuple[int, int] | None = None
 
 
 def with_ranges(text: str, start: int, end: int, read: _Read) -> tuple[str, dict[int, Node]]:
@@ -93,6 +97,8 @@ def _operator(text: str, match: re.Match[str], end: int) -> _Operator:
                 text, script.start() + 1, f"a second {script[1]}", "write one lower and one upper limit"
             )
         limits[script[1]] = (begin, stop)
+    if sign == INTEGRAL and [*limits] == ["^"]:
+        return _Operator(sign, match.start(), (), at, limits["^"])
     if len(limits) < 2 and (sign != INTEGRAL or limits):
         what = r"\int_{0}^{a} f\,dx" if sign == INTEGRAL else r"\sum_{i=1}^{3} f"
         reason = f"{match.group()} {LIMITS_ARE_MISSING}"
@@ -119,7 +125,7 @@ def _integral(text: str, operator: _Operator, end: int, read: _Read) -> tuple[No
     while at < end:
         found = _DIFFERENTIAL.match(text, at, end) if depth == 0 else None
         if found and not nested:
-            return _integrated(text, operator, found, read), found.end()
+            return _integrated(text, operator, found, end, read)
         nested -= found is not None
         token = _TOKEN.match(text, at, end)
         sign = token.group() if token else text[at]
@@ -133,36 +139,72 @@ def _integral(text: str, operator: _Operator, end: int, read: _Read) -> tuple[No
     raise LanguageError(text, operator.at + 1, f"this integral {lacks}", remedy)
 
 
-def _integrated(text: str, operator: _Operator, differential: re.Match[str], read: _Read) -> Node:
-    if differential["primes"]:
+def _integrated(
+    text: str, operator: _Operator, differential: re.Match[str], end: int, read: _Read
+) -> tuple[Node, int]:
+    """Return the tree of an integral, from its differential, and where it ends."""
+    begin = differential.start("variable")
+    stop = max(differential.end("variable"), differential.end("index"))
+    typed = text[begin:stop]
+    if operator.upto is not None:
+        text = _without_primes(text, operator, differential, typed)
+    elif differential["primes"]:
         column = differential.start() + 1
         raise LanguageError(text, column, "a differential of a rate", "write the integral over one variable")
     if behind := re.compile(r"\s*[\^_]").match(text, differential.end()):
         column = behind.end()
         raise LanguageError(text, column, "a power or index of a differential", r"write \int_{0}^{a} f\,dx")
-    begin, stop = differential.span("variable")
-    stop = max(stop, differential.end("index"))
-    name = text[begin:stop].lstrip("\\").replace("{", "").replace("}", "")
-    variable = read(text, begin, stop, name)
+    variable = read(text, begin, stop, typed.lstrip("\\").replace("{", "").replace("}", ""))
     if not isinstance(variable, Name):
         raise LanguageError(text, begin + 1, "an integral is over one variable", r"write \int_{0}^{a} f\,dx")
-    first = _SPACE.match(text, operator.end, differential.start())
-    bare = first is not None and first.end() >= differential.start()
-    if bare and _goes_on(text, differential.end()):
-        reason, remedy = "does what follows belong to the integral?", "write the differential at its end"
-        raise LanguageError(text, differential.start() + 1, reason, remedy)
-    one = text[: operator.end] + "1" + text[operator.end + 1 :]
-    source, last = (one, operator.end + 1) if bare else (text, differential.start())
-    integrand = read(source, operator.end, last, variable.text)
+    source, first, last = _integrand(text, operator, differential, end, typed)
+    integrand = read(source, first, last, variable.text)
     bounds = (read(text, *limit, "") for limit in operator.limits)
-    return Call(INTEGRAL, (integrand, Tuple((variable, *bounds), begin + 1)), operator.at + 1)
+    node = Call(INTEGRAL, (integrand, Tuple((variable, *bounds), begin + 1)), operator.at + 1)
+    return node, max(last, differential.end())
 
 
-def _goes_on(text: str, at: int) -> bool:
+def _integrand(
+    text: str, operator: _Operator, differential: re.Match[str], end: int, typed: str
+) -> tuple[str, int, int]:
+    """Return in which text an integrand stands, from where to where; it is 1 where there is none."""
+    space = _SPACE.match(text, operator.end, differential.start())
+    if space is None or space.end() < differential.start():
+        return text, operator.end, differential.start()
+    if not _goes_on(text, differential.end(), end):
+        return text[: operator.end] + "1" + text[operator.end + 1 :], operator.end, operator.end + 1
+    last = _end_of_term(text, differential.end(), end)
+    if (again := _letter(typed).search(text, last, end)) is not None:
+        reason = f"does the integral go on to here, where {typed} stands again?"
+        raise LanguageError(text, again.start() + 1, reason, "write the differential at its end")
+    return text, differential.end(), last
+
+
+def _letter(typed: str) -> re.Pattern[str]:
+    """Return what finds a variable as it is typed, and the primes behind it."""
+    return re.compile(rf"(?<![A-Za-z\\]){re.escape(typed)}(?![A-Za-z])(?P<primes>'*)")
+
+
+def _without_primes(text: str, operator: _Operator, differential: re.Match[str], typed: str) -> str:
+    """Return a text without the primes that tell the variable of ``\\int^q f(q')\\,dq'`` from its end."""
+    limit = text[slice(*operator.upto or (0, 0))].strip()
+    if limit != typed:
+        reason = f"this integral goes up to {limit[:20] or 'nothing'}, and its variable is {typed}"
+        raise LanguageError(text, operator.at + 1, reason, rf"write \int^{typed} f\,d{typed}', or both limits")
+    primes = differential["primes"]
+    for each in _letter(typed).finditer(text, operator.end, differential.start()):
+        if each["primes"] != primes:
+            reason = f"is this {typed} the variable of the integral, or its end?"
+            raise LanguageError(text, each.start() + 1, reason, rf"write \int^{typed} f({typed}')\,d{typed}'")
+        text = text[: each.start()] + typed.ljust(len(each.group())) + text[each.end() :]
+    return text[: differential.start("primes")] + " " * len(primes) + text[differential.end("primes") :]
+
+
+def _goes_on(text: str, at: int, end: int) -> bool:
     """Tell whether a factor follows."""
-    space = _SPACE.match(text, at)
-    rest = text[space.end() if space else at :]
-    return re.match(r"\\(?!right)[A-Za-z]|[A-Za-z0-9({\[]", rest) is not None
+    space = _SPACE.match(text, at, end)
+    rest = text[space.end() if space else at : end]
+    return re.match(rf"\\(?!right)[A-Za-z]|[A-Za-zα-ω0-9({{\[√{PLACE}]", rest) is not None
 
 
 def _sum(text: str, operator: _Operator, end: int, read: _Read) -> tuple[Node, int]:

@@ -266,7 +266,10 @@ class Reader(FactorParser):
         return place < len(self.tokens) and self.tokens[place].text in ("]", "]]")
 
     def of_function(self, token: Token, bracket: bool) -> Node:
-        """Read a value of a declared function, or with primes its derivative."""
+        """Read a value of a declared function, or with primes its derivative; V alone is V(x)."""
+        if not token.primes and not bracket and self.starts(self.token):
+            arguments = ", ".join(self.scope.functions[token.text])
+            raise self.fault(f"{token.text} is a function", f"write {token.text}({arguments})", token)
         if not token.primes:
             return self.called(token) if bracket else Name(token.text, 0, token.column)
         variables = self.scope.functions[token.text]

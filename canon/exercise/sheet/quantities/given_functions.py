@@ -129,6 +129,8 @@ class GivenFunctions:
             return None
         try:
             letters = {name: parse_expression(self.keys[name], self.scope) for name in given}
+            if "H" in letters and not self.scope.declares("E") and "E" not in self.keys:
+                letters["E"] = letters["H"]
             plain, slopes = self._without_slopes(text, letters)
             put = {name: (sp.Dummy(name, real=True), f) for name, f in {**letters, **slopes}.items()}
             names = {**self.scope.names, **{name: symbol for name, (symbol, _) in put.items()}}
