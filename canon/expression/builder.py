@@ -48,11 +48,18 @@ class Builder:
 
     def whole(self, node: syntax.Node) -> Expr:
         """Return the expression of a whole text; all names in it that mean nothing are told at once."""
+        self.refuse_function_alone(node)
         try:
             return self.expression(node)
         except LanguageError as fault:
             others = [*self._strange_names(node)]
             raise LanguageError.together([fault, *others]) if others else fault from None
+
+    def refuse_function_alone(self, node: syntax.Node) -> None:
+        """Refuse V alone, which is a name, as of a left side; beside others it is the value V(x)."""
+        if isinstance(node, syntax.Name) and node.text in self.scope.functions:
+            arguments = ", ".join(self.scope.functions[node.text])
+            self.refuse(node, f"{node.text} is a function", f"write {node.text}({arguments})")
 
     def _strange_names(self, node: syntax.Node) -> Iterator[LanguageError]:
         bound = bound_names(node)
@@ -127,7 +134,7 @@ class Builder:
             )
         if node.text in self.scope.functions:
             variables = tuple(syntax.Name(name, 0, node.column) for name in self.scope.functions[node.text])
-            return self.call(syntax.Call(node.text, variables, node.column))  # V where V(x) is declared
+            return self.call(syntax.Call(node.text, variables, node.column))
         if node.text in CONSTANTS:
             return CONSTANTS[node.text]
         if node.text == "i" and not self.scope.declares("I"):

@@ -107,6 +107,8 @@ def parse_equation(text: str, scope: Scope) -> Expr:
         raise LanguageError(text, node.column, "this is not one equation", "write lhs = rhs")
     if sides is None:
         return builder.whole(node)
+    for side in sides:
+        builder.refuse_function_alone(side)
     return builder.whole(syntax.Sum(((False, sides[0]), (True, sides[1])), node.column))
 
 

@@ -142,6 +142,7 @@ def test_conditions_and_equations():
         ("sin(x, x)", 1, "takes 1"),
         ("atan2(x)", 1, "takes 2"),
         ("x(2)", 2, "applied to this, or multiplied"),
+        ("V", 1, "write V(x)"),
         ("V(x, x)", 1, "declared with 1"),
         ("sin", 1, "needs its argument"),
         ("lnn(x)", 1, "is not a function"),

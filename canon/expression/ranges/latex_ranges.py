@@ -1,7 +1,7 @@
 r"""Ranges in LaTeX: ``\int_0^{2\pi} \sin^2\theta\,d\theta``, ``\sum_{i=1}^{3} p_i^2``, found before words are read.
 
-An integral goes as far as its differential, or, where that comes first, to the next plus or minus outside brackets, as
-a sum does; one behind which its variable or index goes on is refused. Each becomes one sign of the text, its tree is
+An integral goes as far as its differential, or, where it has no limits and that comes first, to the next plus or minus
+outside brackets, as a sum does; one behind which its variable or index goes on is refused. Each becomes one sign of the text, its tree is
 kept beside it, and every column stays where it was. ``\int^q f(q')\,dq'`` is the integral over q without limits.
 """
 
@@ -174,9 +174,11 @@ def _integrand(
     if not _goes_on(text, differential.end(), end):
         return text[: operator.end] + "1" + text[operator.end + 1 :], operator.end, operator.end + 1
     last = _end_of_term(text, differential.end(), end)
-    if (again := _letter(typed).search(text, last, end)) is not None:
-        reason = f"does the integral go on to here, where {typed} stands again?"
-        raise LanguageError(text, again.start() + 1, reason, "write the differential at its end")
+    again = _letter(typed).search(text, last, end)
+    if operator.limits or again is not None:
+        column = (again or differential).start() + 1
+        reason = "does what follows belong to the integral?"
+        raise LanguageError(text, column, reason, "write the differential at its end")
     return text, differential.end(), last
 
 
