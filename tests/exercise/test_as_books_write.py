@@ -153,3 +153,26 @@ def test_a_function_stands_for_its_value_beside_others():
     assert verdict("legendre-hamiltonian", keys, H="p^2/2m - V") == "FAILS"
     with pytest.raises(InvalidClaim, match=r"V is a function; write V\(x\)"):
         verdict("legendre-hamiltonian", keys, H="V m")
+
+
+# -- virtual work ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("δW = F δx + (F l cos θ - m g l sin θ) δθ", "δW = F δx + (F l cos θ + m g l sin θ) δθ"),
+        (r"$\delta W = F\,\delta x + (F l\cos\theta - m g l\sin\theta)\,\delta\theta$", r"$\delta W = F\,\delta x$"),
+        ("δA = (F l cos θ - m g l sin θ) δθ + F δx", "δA = (F l cos θ - m g l sin θ) δx + F δθ"),
+    ],
+)
+def test_a_virtual_work_says_the_generalized_forces(right, wrong):
+    keys = {
+        "q": ["x", "theta"],
+        "parameters": {"F": "real", "l": "positive", "g": "positive", "m": "positive"},
+        "forces": [{"F": ["F", "-m*g"], "r": ["x + l*sin(theta)", "-l*cos(theta)"]}],
+    }
+    assert verdict("generalized-force", keys, Q=right) == "HOLDS"
+    assert verdict("generalized-force", keys, Q=wrong) == "FAILS"
+    with pytest.raises(InvalidClaim):
+        verdict("generalized-force", keys, Q="δW = F δx δθ")

@@ -20,6 +20,8 @@ READ = {
     "E^2/w (q + a)": E**2 / w * (q + a),
     "sqrt(2m)/a (1 - q)": sp.sqrt(2 * m) / a * (1 - q),
     "a/w^2 (q + x)": a / w**2 * (q + x),
+    "1/2(p^2 + w^2 q^2)": (p**2 + w**2 * q**2) / 2,
+    "a + 3/4(q + x) m": a + sp.Rational(3, 4) * (q + x) * m,
     "E/2π": E / (2 * sp.pi),
     "1/2π + a": 1 / (2 * sp.pi) + a,
     "q E/2π": q * E / (2 * sp.pi),
@@ -42,6 +44,8 @@ def test_they_end_where_nobody_doubts_it(text):
         ("p^2/2 (m + a)", "is p"),  # p²/(2(m + a)), by many a hand
         ("p/2 sqrt(a)", "is p/2"),
         ("E/w(q + a)", "is E/w"),
+        ("a/2(q + x)", "is a/2"),
+        ("1/2m (q + x)", "is 1/2"),
         ("E/ w (q + a)", "is E/"),
         ("q/w sqrt(a)", "is q/w"),
         ("E/q (q + a)", "is E/q"),

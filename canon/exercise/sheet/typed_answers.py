@@ -14,9 +14,11 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from canon.exercise.sheet import field_texts
+from canon.exercise.sheet.declared_symbols import as_list
 from canon.exercise.sheet.equations.matrix_products import components_of_products
 from canon.exercise.sheet.equations.sides import Sides
 from canon.exercise.sheet.equations.typed_equations import typed_equations
+from canon.exercise.sheet.equations.virtual_work import forces_of_work
 from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.kinds import kind_of
 from canon.exercise.sheet.left_sides import (
@@ -360,6 +362,8 @@ class _Plain:
 
     def apart(self, place: str, text: str) -> list[str]:
         """Return the components that stand in one text: in one bracket, or as several equations."""
+        if "work" in self.kind.shapes and (forces := self.forces_of_work(text)) is not None:
+            return forces
         entries = field_texts.of_matrix(text) or components_of_products(text, self.sides.reads(place, text))
         if entries:
             return entries
@@ -367,6 +371,14 @@ class _Plain:
         if len(statements) > 1:
             return [field_texts.whole_statement(statement, text) for statement in statements]
         return field_texts.components_of(text) or [text]
+
+    def forces_of_work(self, text: str) -> list[str] | None:
+        """Return the generalized forces of a virtual work."""
+        q = [self.scope.names[name] for name in as_list(self.of.keys["q"]) if name in self.scope.names]
+        try:
+            return forces_of_work(text, q, self.scope)
+        except LanguageError:
+            return None
 
     def in_order(self, place: str, texts: Sequence[str], names: tuple[Quantity, ...]) -> list[str]:
         """Return components in the order that is asked for, where their left sides say another one."""

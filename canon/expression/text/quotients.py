@@ -1,6 +1,6 @@
 """Quotients with a slash: where they end, as far as that is beyond doubt.
 
-``1/2 m`` is half of m, ``g/l sin θ`` and ``k/m x`` have g/l and k/m as factors: numbers, or parameters before a
+``1/2 m`` is half of m, ``1/2(a + b)`` of the sum, ``g/l sin θ`` and ``k/m x`` have g/l and k/m as factors: numbers, or parameters before a
 function or before what moves, written without blanks and with one behind.
 After a bracket the quotient ends, ``1/(2m) x``, and before one behind a blank, ``m/2 (a + b)``, ``E/w (a + b)``, as
 before a function, ``x/2 sqrt(a)``; not where a momentum is divided, for ``p²/2 (m + M)`` may be p²/(2(m + M)). A
@@ -101,7 +101,8 @@ def ended(reader: FactorParser, factors: list[tuple[bool, Node]], starts: list[i
     plain = plain or (apart and _is_single(reader, under) and not _holds_momentum(reader, factors[:-1]))
     goes_on = is_function(reader) or (reader.token.kind == "name" and reader.scope.moves(reader.token.text))
     steady = goes_on and all(_steady(reader, _signless(node)) for _, node in factors)
-    if bracketed or (tight and (plain or steady)):
+    half = reader.token.text == "(" and isinstance(over, Number) and isinstance(under, Number)
+    if bracketed or (tight and (plain or steady)) or (half and all(t.tight for t in piece[slash:])):
         return
     shown = reader.text[piece[0].column - 1 : reader.token.column - 1].strip()
     after = reader.text[reader.token.column - 1 :].split(" ")[0]
