@@ -152,6 +152,11 @@ MEANINGS = {
     "1/2 m": "m/2",
     "m/2 (x + a)": "m*(x + a)/2",
     "p²/(2m)": "p**2/(2*m)",
+    "a^2x^2": "a**2*x**2",
+    "1/2(a + b)": "(a + b)/2",
+    "k/m (x + a)": "k*(x + a)/m",
+    "x/2 sqrt(a)": "x*sqrt(a)/2",
+    "k/2π": "k/(2*pi)",
     "p²/2m": "p**2/(2*m)",
     "(g/l) sin θ": "g*sin(theta)/l",
     "g/l sin θ": "g*sin(theta)/l",
@@ -242,7 +247,8 @@ MEANINGS = {
 """What the page's table of plain text shows, and what it is; empty where the meaning has no plain spelling."""
 OTHER_ROWS = (
     "other names", "abbreviations", "rates by their letters", "prose", "derivations", "numbers of equations",
-    "decimal commas", "remarks", "around", "left sides", "chains", "several",
+    "decimal commas", "remarks", "around", "left sides", "chains", "several", "both signs", "the energy",
+    "values of functions", "virtual work",
 )  # fmt: skip
 """Rows about whole answers, which are tested with questions."""
 
