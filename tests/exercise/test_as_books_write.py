@@ -118,7 +118,13 @@ def test_one_wrong_sign_is_wrong():
 
 
 @pytest.mark.parametrize(
-    ("right", "wrong"), [("H/w", "2H/w"), ("J = E/w = H/w", "J = E/w = 2H/w"), ("J = E/ω", "J = E/2π"), ("J = H/w = E/w", "J = 2H/w = E/w")]
+    ("right", "wrong"),
+    [
+        ("H/w", "2H/w"),
+        ("J = E/w = H/w", "J = E/w = 2H/w"),
+        ("J = E/ω", "J = E/2π"),
+        ("J = H/w = E/w", "J = 2H/w = E/w"),
+    ],
 )
 def test_actions_by_the_energy(right, wrong):
     assert verdict("action-angle", OSCILLATOR, J=right) == "HOLDS"
@@ -148,7 +154,13 @@ def test_the_energy_is_no_letter_where_it_is_declared():
 
 
 def test_a_function_stands_for_its_value_beside_others():
-    keys = {"q": ["x"], "p": ["p"], "functions": {"V": ["x"]}, "L": "m x'^2/2 - V(x)", "parameters": {"m": "positive"}}
+    keys = {
+        "q": ["x"],
+        "p": ["p"],
+        "functions": {"V": ["x"]},
+        "L": "m x'^2/2 - V(x)",
+        "parameters": {"m": "positive"},
+    }
     assert verdict("legendre-hamiltonian", keys, H="p^2/2m + V") == "HOLDS"
     assert verdict("legendre-hamiltonian", keys, H="p^2/2m - V") == "FAILS"
     with pytest.raises(InvalidClaim, match=r"V is a function; write V\(x\)"):
@@ -162,7 +174,10 @@ def test_a_function_stands_for_its_value_beside_others():
     ("right", "wrong"),
     [
         ("δW = F δx + (F l cos θ - m g l sin θ) δθ", "δW = F δx + (F l cos θ + m g l sin θ) δθ"),
-        (r"$\delta W = F\,\delta x + (F l\cos\theta - m g l\sin\theta)\,\delta\theta$", r"$\delta W = F\,\delta x$"),
+        (
+            r"$\delta W = F\,\delta x + (F l\cos\theta - m g l\sin\theta)\,\delta\theta$",
+            r"$\delta W = F\,\delta x$",
+        ),
         ("δA = (F l cos θ - m g l sin θ) δθ + F δx", "δA = (F l cos θ - m g l sin θ) δx + F δθ"),
     ],
 )

@@ -1,4 +1,4 @@
-"""Student's t distribution and the inverses of triangles that drifts are judged by, against SciPy's."""
+"""Student's t distribution, inverses of triangles and whitened noise that drifts are judged by, against SciPy's."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,16 @@ from hypothesis import strategies as st
 from scipy.linalg import solve_triangular
 from scipy.special import stdtr
 
-from canon.study.energy_drift.noise_models import _inverse_triangles
+from canon.study.energy_drift.noise_models import (
+    _inverse_triangles,
+    fractional,
+    local_level,
+    returning,
+    returning_covariance,
+    scatter_covariance,
+    walk_covariance,
+    wandering,
+)
 from canon.study.energy_drift.student_t import student_tail
 
 PLACES = np.concatenate([np.linspace(-30, 30, 601), [np.inf, -np.inf, 1e300]])
@@ -28,3 +37,29 @@ def test_inverses_of_triangles(n, members, seed):
     for each, found in zip(lower, _inverse_triangles(lower), strict=True):
         np.testing.assert_allclose(found, solve_triangular(each, np.eye(n), lower=True), atol=1e-12)
         np.testing.assert_array_equal(np.triu(found, 1), 0)
+
+
+@pytest.mark.parametrize("windows", [8, 64])
+@pytest.mark.parametrize(
+    ("family", "covariance"),
+    [
+        (local_level, walk_covariance),
+        (fractional, walk_covariance),
+        (wandering, walk_covariance),
+        (returning, returning_covariance),
+    ],
+)
+def test_noise_is_white_to_its_own_member(family, covariance, windows):
+    """W C Wᵀ is the unit matrix and 2 ln|W| = −ln|C| for the covariance C of each member, and of no other."""
+    found = family(windows)
+    whiteners = found.whitened(np.eye(windows - 1))
+    scatter = scatter_covariance(windows)
+    members = [
+        (not np.isinf(ratio)) * scatter + (1 if np.isinf(ratio) else ratio) * covariance(float(h), windows)
+        for h, ratio in zip(found.exponent, found.ratio, strict=True)
+    ]
+    for W, C, determinant in zip(whiteners, members, found.log_determinant, strict=True):
+        np.testing.assert_allclose(W @ C @ W.T, np.eye(windows - 1), atol=1e-9)
+        assert abs(np.linalg.slogdet(C)[1] - determinant) < 1e-8
+    W, C = whiteners[0], members[-1]
+    assert np.abs(W @ C @ W.T - np.eye(windows - 1)).max() > 1e-3

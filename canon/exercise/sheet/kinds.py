@@ -105,6 +105,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             one_of=(("q_dot", "p_dot"), ("solution",)),
             answer=("q_dot", "p_dot", "solution"),
             unknowns="the rates of all coordinates and momenta, or a motion of all of them",
+            independent=True,
             repaired=("solution",),
             screen="solution",
             rereadings=("exchanged_equations",),

@@ -52,13 +52,17 @@ def signs_apart(claim: Claim, fault: _Fault) -> tuple[Claim, ...]:
     ['+x', '-x']
     """
     kind = kind_of(claim.kind, claim.keys)
-    signed = [key for key in kind.answer if key in claim.keys and _is_signed(kind, key, claim.keys[key], fault)]
+    signed = [
+        key for key in kind.answer if key in claim.keys and _is_signed(kind, key, claim.keys[key], fault)
+    ]
     if not signed:
         return (claim,)
     return tuple(
         replace(
             claim,
-            keys=FrozenMapping({**claim.keys, **{key: _with_signs(claim.keys[key], key, which, fault) for key in signed}}),
+            keys=FrozenMapping(
+                {**claim.keys, **{key: _with_signs(claim.keys[key], key, which, fault) for key in signed}}
+            ),
         )
         for which in (0, 1)
     )

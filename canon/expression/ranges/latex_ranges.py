@@ -192,7 +192,9 @@ def _without_primes(text: str, operator: _Operator, differential: re.Match[str],
     limit = text[slice(*operator.upto or (0, 0))].strip()
     if limit != typed:
         reason = f"this integral goes up to {limit[:20] or 'nothing'}, and its variable is {typed}"
-        raise LanguageError(text, operator.at + 1, reason, rf"write \int^{typed} f\,d{typed}', or both limits")
+        raise LanguageError(
+            text, operator.at + 1, reason, rf"write \int^{typed} f\,d{typed}', or both limits"
+        )
     primes = differential["primes"]
     for each in _letter(typed).finditer(text, operator.end, differential.start()):
         if each["primes"] != primes:

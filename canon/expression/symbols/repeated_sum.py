@@ -61,7 +61,9 @@ class RepeatedSum(Expr):
     ) -> RepeatedSum:
         """Return the sum; the arguments may be SymPy's own, as they come from an expression that is taken apart."""
         rows = Tuple(*(column if isinstance(column, Tuple) else Tuple(*column) for column in columns))
-        return Expr.__new__(cls, sp.sympify(term), Tuple(*slots), rows, sp.true if pairs else sp.false)
+        return Expr.__new__(
+            cls, sp.sympify(term, strict=True), Tuple(*slots), rows, sp.true if pairs else sp.false
+        )
 
     @property
     def _given(self) -> tuple[Any, Any, Any, Any]:

@@ -55,7 +55,9 @@ def _is_circle(reader: FactorParser) -> bool:
     if pi.text not in ("pi", "π") or pi.primes or reader.scope.declares(pi.text):
         return False
     behind = reader.tokens[reader.at + 1]
-    return not behind.tight or not (reader.starts(behind) or behind.kind == "super" or behind.text in ("^", "**"))
+    return not behind.tight or not (
+        reader.starts(behind) or behind.kind == "super" or behind.text in ("^", "**")
+    )
 
 
 def _holds_momentum(reader: FactorParser, factors: list[tuple[bool, Node]]) -> bool:

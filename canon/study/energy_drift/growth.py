@@ -184,7 +184,7 @@ def power_of_time(means: Array) -> Exponent:
     """Return the exponent γ of block means that follow a + c t^γ beside scatter and walk, 0.2 ≤ γ ≤ 8."""
     family = local_level(means.size)
     exponents, x = _powers(means.size)
-    y = (family.whitener @ np.diff(means))[:, :, None]
+    y = family.whitened(np.diff(means))[:, :, None]
     slope = np.sum(x * y, axis=1) / np.sum(x * x, axis=1)
     squares = np.sum((y - slope[:, None, :] * x) ** 2, axis=1)
     scale = squares / (means.size - 2) + _floor(means)
@@ -212,7 +212,7 @@ def _powers(windows: int) -> tuple[Array, Array]:
     weight = bump(place) / bump(place).sum()
     t = (window_starts(windows)[:, None] / PLACES + WIDTH * place) / (windows + WIDTH)
     increments = np.diff((t[None] ** exponents[:, None, None]) @ weight, axis=1)
-    return exponents, local_level(windows).whitener @ increments.T
+    return exponents, local_level(windows).whitened(increments.T)
 
 
 def _interval(exponents: Array, log_likelihood: Array, drop: float) -> Exponent:

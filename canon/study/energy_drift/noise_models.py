@@ -47,8 +47,13 @@ class NoiseFamily:
         Exponent H of the wandering part of each member, shape (members,); of a returning one its memory.
     ratio
         Its variance per block over that of the scatter about the level; ``inf`` without scatter.
-    whitener
-        Inverse Cholesky factors, shape (members, K − 1, K − 1).
+    bases
+        Coordinates in which the increments of all members of one exponent are independent, shape
+        (exponents, K − 1, K − 1).
+    basis_of
+        The number of each member's, shape (members,).
+    spread
+        Standard deviations of these coordinates, shape (members, K − 1).
     log_determinant
         Of each covariance.
     line
@@ -57,9 +62,15 @@ class NoiseFamily:
 
     exponent: Array
     ratio: Array
-    whitener: Array
+    bases: Array
+    basis_of: npt.NDArray[np.intp]
+    spread: Array
     log_determinant: Array
     line: Array
+
+    def whitened(self, increments: Array) -> Array:
+        """Return increments, shape (K − 1,) or (K − 1, series), as each member sees them: independent, of variance one."""
+        return _whitened(self.bases, self.basis_of, self.spread, increments)
 
 
 @dataclass(frozen=True)
@@ -97,7 +108,7 @@ def fit(increments: Array, family: NoiseFamily, floor: float = 0.0) -> Fit:
     floor
         Variance of an increment that arithmetic leaves even where nothing scatters.
     """
-    y = family.whitener @ increments
+    y = family.whitened(increments)
     x = family.line
     weight = np.sum(x * x, axis=1)
     slope = np.sum(x * y, axis=1) / weight
@@ -119,7 +130,11 @@ def local_level(windows: int) -> NoiseFamily:
 def fractional(windows: int) -> NoiseFamily:
     """Return fractional noise alone, from H = −0.45 (nearly independent) to 0.95 (nearly a trend)."""
     exponents = np.linspace(-0.45, 0.95, 57)
-    return _family(exponents, np.full(exponents.size, np.inf), windows)
+    factor = np.linalg.cholesky(np.stack([walk_covariance(float(h), windows) for h in exponents]))
+    spread = np.ones(factor.shape[:2])
+    determinants = 2.0 * np.sum(np.log(np.diagonal(factor, axis1=1, axis2=2)), axis=1)
+    ratios, each = np.full(exponents.size, np.inf), np.arange(exponents.size)
+    return _made(exponents, ratios, _inverse_triangles(factor), each, spread, determinants, windows)
 
 
 @lru_cache(maxsize=16)
@@ -149,17 +164,40 @@ def _family(
     windows: int,
     covariance: Callable[[float, int], Array] = lambda h, windows: walk_covariance(h, windows),
 ) -> NoiseFamily:
-    walks = {float(h): covariance(float(h), windows) for h in np.unique(exponents)}
-    scatter = scatter_covariance(windows)
-    members = [
-        walks[float(h)] if np.isinf(ratio) else scatter + ratio * walks[float(h)]
-        for h, ratio in zip(exponents, ratios, strict=True)
-    ]
-    factor = np.linalg.cholesky(np.stack(members))
-    log_determinant = 2.0 * np.sum(np.log(np.diagonal(factor, axis1=1, axis2=2)), axis=1)
-    whitener = _inverse_triangles(factor)
-    line = whitener @ (np.diff(window_starts(windows)) / PLACES)
-    return NoiseFamily(exponents, ratios, whitener, log_determinant, line)
+    """Return scatter beside walks in each of these ratios.
+
+    Scatter C Cᵀ and the walk C U Λ Uᵀ Cᵀ are diagonal together in the coordinates Uᵀ C⁻¹: one decomposition for all
+    ratios of an exponent (G. H. Golub, C. F. Van Loan, Matrix Computations, § 8.7).
+    """
+    own, basis_of = np.unique(exponents, return_inverse=True)
+    factor = np.linalg.cholesky(scatter_covariance(windows))
+    to_scatter = _inverse_triangles(factor[np.newaxis])[0]
+    walks = np.stack([covariance(float(h), windows) for h in own])
+    variances, axes = np.linalg.eigh(to_scatter @ walks @ to_scatter.T)
+    alone = np.isinf(ratios)[:, np.newaxis]
+    weights = np.where(alone, 1.0, ratios[:, np.newaxis])
+    spread = np.sqrt(~alone + weights * variances[basis_of])
+    determinants = 2.0 * (np.sum(np.log(np.diagonal(factor))) + np.sum(np.log(spread), axis=1))
+    bases = np.swapaxes(axes, 1, 2) @ to_scatter
+    return _made(exponents, ratios, bases, basis_of, spread, determinants, windows)
+
+
+def _made(
+    exponents: Array,
+    ratios: Array,
+    bases: Array,
+    basis_of: npt.NDArray[np.intp],
+    spread: Array,
+    log_determinant: Array,
+    windows: int,
+) -> NoiseFamily:
+    line = _whitened(bases, basis_of, spread, np.diff(window_starts(windows)) / PLACES)
+    return NoiseFamily(exponents, ratios, bases, basis_of, spread, log_determinant, line)
+
+
+def _whitened(bases: Array, basis_of: npt.NDArray[np.intp], spread: Array, increments: Array) -> Array:
+    seen = (bases @ increments)[basis_of]
+    return seen / (spread if increments.ndim == 1 else spread[:, :, np.newaxis])
 
 
 def _inverse_triangles(lower: npt.NDArray[Any]) -> npt.NDArray[Any]:
