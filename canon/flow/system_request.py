@@ -88,7 +88,7 @@ def any_task(request: Request) -> tuple[Task, MovingSystem | None]:
     if is_scene(request.system):
         system, y0, parameters = opened(request.system, request.y0, request.parameters or {})
         request = replace(request, system=system, y0=y0, parameters=SpareParameters(parameters))
-    from canon.flow.system.system_task import system_task  # only here: it loads what derives equations
+    from canon.flow.system_task import system_task  # only here: it loads what derives equations
 
     return system_task(request)
 

@@ -12,8 +12,8 @@ from canon.expression.symbols.user_input import counted
 from canon.flow.equations.contact_regimes import seen_by_people
 from canon.flow.estimate.error_estimate import ErrorEstimate, error_estimate
 from canon.flow.interpolation import states_at
-from canon.flow.labelled_motion import labelled
 from canon.flow.record_file import write_record
+from canon.flow.run.labelled_motion import labelled
 from canon.flow.run_record import recorded
 from canon.progress import reporting
 

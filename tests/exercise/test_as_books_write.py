@@ -1,4 +1,4 @@
-"""Answers as books write them: ±, quadratures, parts of a complete integral, actions by the energy; each with a wrong twin."""
+"""Answers as books write them: ±, quadratures, parts of an integral, actions by the energy; each with a wrong twin."""
 
 from __future__ import annotations
 

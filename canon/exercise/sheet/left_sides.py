@@ -80,7 +80,10 @@ _ACTION = re.compile(
     r"(?:\s|\\[,;: ]|\*){0,9})?(?:\\o?int|[∫∮])\s{0,9}p(?:_\\?\w{1,9}|_\{\\?\w{1,9}\})?(?:\s|\\[,;: ]){0,9}"
     r"(?:\\mathrm\s?\{d\}|\\dd|d)\s{0,9}\\?\w{1,9}(?P<less>\s{0,9}[-−]\s{0,9}\w{1,9}(?:\s|\*){0,9}t)?"
 )
-"""``∫ p dq``, for S less ``E t``, and the share of it that an action is; repeats are bounded, or blanks are tried in too many ways."""
+"""``∫ p dq``, for S less ``E t``, and the share of it that an action is.
+
+Repeats are bounded, or blanks are tried in too many ways.
+"""
 _FREQUENCY = re.compile(r"[∂d][EH]/[∂d](?P<action>[JI])")
 """A frequency by its definition."""
 _SEPARATED = {

@@ -1,8 +1,9 @@
 r"""Ranges in LaTeX: ``\int_0^{2\pi} \sin^2\theta\,d\theta``, ``\sum_{i=1}^{3} p_i^2``, found before words are read.
 
 An integral goes as far as its differential, or, where it has no limits and that comes first, to the next plus or minus
-outside brackets, as a sum does; one behind which its variable or index goes on is refused. Each becomes one sign of the text, its tree is
-kept beside it, and every column stays where it was. ``\int^q f(q')\,dq'`` is the integral over q without limits.
+outside brackets, as a sum does; one behind which its variable or index goes on is refused. Each becomes one sign of the
+text, its tree is kept beside it, and every column stays where it was. ``\int^q f(q')\,dq'`` is the integral over q
+without limits.
 """
 
 from __future__ import annotations
@@ -188,7 +189,7 @@ def _letter(typed: str) -> re.Pattern[str]:
 
 
 def _without_primes(text: str, operator: _Operator, differential: re.Match[str], typed: str) -> str:
-    """Return a text without the primes that tell the variable of ``\\int^q f(q')\\,dq'`` from its end."""
+    r"""Return a text without the primes that tell the variable of ``\int^q f(q')\,dq'`` from its end."""
     limit = text[slice(*operator.upto or (0, 0))].strip()
     if limit != typed:
         reason = f"this integral goes up to {limit[:20] or 'nothing'}, and its variable is {typed}"

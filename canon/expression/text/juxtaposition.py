@@ -121,13 +121,7 @@ class Reader(FactorParser):
             raise self.fault("comprehensions are not part of the language")
         if divides:
             ended(self, factors, starts)
-        bare = before.operand if isinstance(before, Negative) else before
-        exponent = isinstance(bare, Power) and last.kind != "super" and last.text not in (")", "]", "}")
-        power_of = isinstance(bare, Power) and isinstance(bare.exponent, Number) and is_function(self)
-        # R^2(…) is a product by hand; x**2(…) is code that lacks a sign.
-        bracket = token.text == "(" and last.kind == "number" and self.tokens[self.at - 2].text == "^"
-        beyond = power_of or bracket or (last.kind == "number" and self.is_raised_too(token))
-        if exponent and token.tight and self.bare_end != self.at and not beyond:
+        if token.tight and self.bare_end != self.at and self.may_be_raised(before, last):
             raise self.fault(
                 "does this still belong to the exponent?", "put a space or * before it, or brackets"
             )
@@ -142,6 +136,17 @@ class Reader(FactorParser):
         if token.text in CLOSING and last.kind == "name":
             self.no_value(token, last, factor.base if isinstance(factor, Power) else factor)
         return factor
+
+    def may_be_raised(self, before: Node, last: Token) -> bool:
+        """Tell whether what follows a power may still belong to its exponent, ``x^2y``."""
+        power = before.operand if isinstance(before, Negative) else before
+        if not isinstance(power, Power) or last.kind == "super" or last.text in (")", "]", "}"):
+            return False
+        if isinstance(power.exponent, Number) and is_function(self):
+            return False
+        # R^2(…) is a product by hand; x**2(…) is code that lacks a sign.
+        bracket = self.token.text == "(" and self.tokens[self.at - 2].text == "^"
+        return not (last.kind == "number" and (bracket or self.is_raised_too(self.token)))
 
     def is_raised_too(self, token: Token) -> bool:
         """Tell whether a name is raised as the factor before it was: w^2q^2 is a product, w^2q may be none."""

@@ -1,7 +1,7 @@
 """Quotients with a slash: where they end, as far as that is beyond doubt.
 
-``1/2 m`` is half of m, ``1/2(a + b)`` of the sum, ``g/l sin θ`` and ``k/m x`` have g/l and k/m as factors: numbers, or parameters before a
-function or before what moves, written without blanks and with one behind.
+``1/2 m`` is half of m, ``1/2(a + b)`` of the sum, ``g/l sin θ`` and ``k/m x`` have g/l and k/m as factors: numbers, or
+parameters before a function or before what moves, written without blanks and with one behind.
 After a bracket the quotient ends, ``1/(2m) x``, and before one behind a blank, ``m/2 (a + b)``, ``E/w (a + b)``, as
 before a function, ``x/2 sqrt(a)``; not where a momentum is divided, for ``p²/2 (m + M)`` may be p²/(2(m + M)). A
 momentum over a number and a word is over all of it: ``p²/2m`` is p²/(2m); so is anything over ``2π``. Everything else

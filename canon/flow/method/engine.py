@@ -3,12 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from canon.flow.method.number_formats import ADAPTIVE, FIXED
-
-if TYPE_CHECKING:
-    from canon.flow.method.method import Method
 
 __all__ = ["FICTITIOUS_TIME", "FIXED_STEPS", "HEYOKA", "SCIPY", "Engine", "needs_hamiltonian"]
 
@@ -18,9 +14,9 @@ _FOR_ANY_SYSTEM = (
 """Families of methods that need no Hamiltonian."""
 
 
-def needs_hamiltonian(method: Method) -> bool:
-    """Tell whether a method is made for Hamiltonians and applies to nothing else."""
-    return method.family not in _FOR_ANY_SYSTEM
+def needs_hamiltonian(family: str) -> bool:
+    """Tell whether the methods of a family are made for Hamiltonians and apply to nothing else."""
+    return family not in _FOR_ANY_SYSTEM
 
 
 @dataclass(frozen=True)

@@ -308,7 +308,7 @@ def _check(case: Case) -> None:
         raise ValueError(
             f"{case.system}: a start needs {len(case.variables)} numbers ({variables}), not {list(case.start)}"
         )
-    if not is_hamiltonian(case.hamiltonian) and needs_hamiltonian(case.method):
+    if not is_hamiltonian(case.hamiltonian) and needs_hamiltonian(case.method.family):
         raise ValueError(
             f"{case.method} is made for Hamiltonians, which {case.system_name} is not; "
             "Taylor, DOP853, RK4 and Gauss apply"

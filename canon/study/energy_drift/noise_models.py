@@ -69,7 +69,7 @@ class NoiseFamily:
     line: Array
 
     def whitened(self, increments: Array) -> Array:
-        """Return increments, shape (K − 1,) or (K − 1, series), as each member sees them: independent, of variance one."""
+        """Return increments, shape (K − 1,) or (K − 1, series), as each member sees them: independent, variance one."""
         return _whitened(self.bases, self.basis_of, self.spread, increments)
 
 

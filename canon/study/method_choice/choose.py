@@ -243,7 +243,9 @@ def choose(
     considered = tuple(map(method_of, methods)) if methods is not None else candidate_methods(question)
     if not considered:
         raise StudyError("no method to choose from: name at least one")
-    if not is_hamiltonian(question.hamiltonian) and all(map(needs_hamiltonian, considered)):
+    if not is_hamiltonian(question.hamiltonian) and all(
+        needs_hamiltonian(method.family) for method in considered
+    ):
         raise StudyError(
             f"{', '.join(map(str, considered))}: made for Hamiltonians, which {subject.title} is not; "
             "Taylor, DOP853, RK4 and Gauss apply"

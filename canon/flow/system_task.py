@@ -212,7 +212,7 @@ def _work_unit(motion: FirstOrderMotion, start: Mapping[Symbol, float]) -> Fract
 
 
 def _check_method(method: Method, moving: MovingSystem) -> None:
-    if needs_hamiltonian(method):
+    if needs_hamiltonian(method.family):
         raise ValueError(
             f"{method} is made for a Hamiltonian and does not apply to a {moving.kind}; "
             "Taylor, DOP853, RK4 and Gauss do"
