@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import solve_triangular
-from scipy.special import stdtr
+from scipy.special import stdtr, stdtrit
 
+from canon.study.energy_drift.growth import _place_of
 from canon.study.energy_drift.noise_models import (
     _inverse_triangles,
     fractional,
@@ -63,3 +64,17 @@ def test_noise_is_white_to_its_own_member(family, covariance, windows):
         assert abs(np.linalg.slogdet(C)[1] - determinant) < 1e-8
     W, C = whiteners[0], members[-1]
     assert np.abs(W @ C @ W.T - np.eye(windows - 1)).max() > 1e-3
+
+
+@given(st.integers(1, 60), st.floats(1e-5, 0.4))
+def test_the_place_where_a_tail_falls_to_a_value_is_found_in_few_looks(freedom, value):
+    looks = []
+
+    def tail(t):
+        looks.append(t)
+        return float(student_tail(freedom, np.array(t)))
+
+    expected = -stdtrit(freedom, value)
+    if expected < 900:
+        assert abs(_place_of(tail, value) - expected) < 1e-7 * max(1.0, expected)
+    assert len(looks) < 30
