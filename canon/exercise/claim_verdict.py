@@ -65,9 +65,15 @@ def questions(reading: Reading) -> Iterator[Question]:
     InvalidClaim
         Where the claim does not say something that could be judged.
     """
-    yield from _of_one_sign(reading)
-    if reading.lower is not None:
-        yield from _of_one_sign(reading.lower)
+    for _, question in _asked(reading):
+        yield question
+
+
+def _asked(reading: Reading) -> Iterator[tuple[Reading, Question]]:
+    """Yield every question with the claim, of the upper or of the lower signs, that comes down to it."""
+    for signed in reading.signs:
+        for question in _of_one_sign(signed):
+            yield signed, question
 
 
 def _of_one_sign(reading: Reading) -> Iterator[Question]:
@@ -157,11 +163,9 @@ def examined(reading: Reading, deadline: Deadline) -> Finding:
     turned: Question | None = None
     named, held = "", 0
     try:
-        answered += without_value(reading, deadline)
-        if reading.lower is not None:
-            answered += without_value(reading.lower, deadline)
-        asks = () if any(verdict.fails for verdict in answered) else questions(reading)
-        for number, question in enumerate(asks):
+        answered += [lack for signed in reading.signs for lack in without_value(signed, deadline)]
+        asks = () if any(verdict.fails for verdict in answered) else _asked(reading)
+        for number, (signed, question) in enumerate(asks):
             if isinstance(question, Determines) and not question.wanted:
                 beside.append(question)
                 continue
@@ -174,7 +178,7 @@ def examined(reading: Reading, deadline: Deadline) -> Finding:
             answered.append(verdict)
             asked.append((question, verdict))
             if verdict.fails:
-                turned, held = question, number
+                turned, held, reading = question, number, signed
                 break
     except (Undecided, NotFiniteError) as reason:
         answered.append(Verdict(Status.UNDECIDED, evidence=(Evidence("open", str(reason)),)))

@@ -6,6 +6,7 @@ import pytest
 
 from canon.exercise import Claim, judge
 from canon.exercise.claim_verdict import examine
+from canon.exercise.explained_judgement import judgements
 from canon.exercise.sheet.reading import InvalidClaim
 
 OSCILLATOR = {
@@ -98,6 +99,14 @@ def test_both_signs_are_claimed():
     assert verdict("constant-of-motion", plane, I="x*py ± y*px") == "FAILS"  # the lower signs alone are right
     assert verdict("constant-of-motion", plane, I="x*py ∓ y*px") == "FAILS"  # the upper signs alone are right
     assert verdict("constant-of-motion", plane, I="x*py - y*px ∓ (px^2 + x^2)") == "HOLDS"
+
+
+def test_the_sign_that_is_wrong_is_told():
+    plane = {"q": ["x", "y"], "p": ["px", "py"], "H": "(px^2+py^2)/2+(x^2+y^2)/2"}
+    for typed in ("x*py ± y*px", "x*py ∓ y*px"):
+        *_, (found, _) = judgements(Claim("a", "constant-of-motion", plane | {"I": typed}))
+        assert "the sign of py*x is wrong" in found.feedback
+        assert found.corrected == "I = px*y - py*x"
 
 
 def test_signs_of_a_gradient_go_with_those_of_nothing_else():

@@ -107,7 +107,13 @@ class Reading:
         if not lower:
             return upper
         told = "± is read as two answers, of the upper signs and of the lower, and both must be right"
-        return replace(upper, lower=lower[0], passed=(*upper.passed, told))
+        upper, below = (replace(each, passed=(*each.passed, told)) for each in (upper, *lower))
+        return replace(upper, lower=below)
+
+    @property
+    def signs(self) -> tuple[Reading, ...]:
+        """The claims of the upper and of the lower signs, or the claim itself."""
+        return (self,) if self.lower is None else (replace(self, lower=None), self.lower)
 
     def error(self, key: str, error: LanguageError) -> InvalidClaim:
         """Return the error of a text under a key."""
