@@ -140,6 +140,20 @@ def test_actions_by_the_energy(right, wrong):
     assert verdict("action-angle", OSCILLATOR, J=wrong) == "FAILS"
 
 
+def test_frequencies_that_are_equal_are_said_once():
+    keys = {
+        "q": ["r", "phi"],
+        "p": ["pr", "l"],
+        "H": "(pr^2 + l^2/r^2)/(2m) - k/r",
+        "parameters": {"m": "positive", "k": "positive", "r": "positive", "l": "positive", "E": "negative"},
+        "domain": ["(pr**2 + l**2/r**2)/(2*m) - k/r < 0"],
+    }
+    assert verdict("frequency", keys, omega="ω_r = ω_φ = (2|E|)^(3/2)/(k√m)") == "HOLDS"
+    assert verdict("frequency", keys, omega="ω_r = ω_φ = (2|E|)^(3/2)/(2k√m)") == "FAILS"
+    with pytest.raises(InvalidClaim):
+        verdict("frequency", keys, omega="ω_r = (2|E|)^(3/2)/(k√m)")
+
+
 @pytest.mark.parametrize(
     ("right", "wrong"),
     [

@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from canon.exercise.sheet import field_texts
-from canon.exercise.sheet.declared_symbols import as_list
 from canon.exercise.sheet.equations.matrix_products import components_of_products
 from canon.exercise.sheet.equations.sides import Sides
 from canon.exercise.sheet.equations.typed_equations import typed_equations
@@ -350,7 +349,7 @@ class _Plain:
         texts: list[Any] = value if isinstance(value, list) else [value]
         names = components_asked(place, self.of.keys, self.scope)
         if len(texts) == 1 and isinstance(texts[0], str):
-            texts = self.apart(place, texts[0])
+            texts = self.of_all(place, texts[0], names) or self.apart(place, texts[0])
         if len(texts) == len(names) > 1 and all(type(text) is str for text in texts):
             texts = self.in_order(place, texts, names)
         found: list[Any] = []
@@ -362,7 +361,7 @@ class _Plain:
 
     def apart(self, place: str, text: str) -> list[str]:
         """Return the components that stand in one text: in one bracket, or as several equations."""
-        if "work" in self.kind.shapes and (forces := self.forces_of_work(text)) is not None:
+        if "work" in self.kind.shapes and (forces := forces_of_work(text, self.of.keys["q"], self.scope)):
             return forces
         entries = field_texts.of_matrix(text) or components_of_products(text, self.sides.reads(place, text))
         if entries:
@@ -372,13 +371,15 @@ class _Plain:
             return [field_texts.whole_statement(statement, text) for statement in statements]
         return field_texts.components_of(text) or [text]
 
-    def forces_of_work(self, text: str) -> list[str] | None:
-        """Return the generalized forces of a virtual work."""
-        q = [self.scope.names[name] for name in as_list(self.of.keys["q"]) if name in self.scope.names]
-        try:
-            return forces_of_work(text, q, self.scope)
-        except LanguageError:
-            return None
+    def of_all(self, place: str, text: str, names: tuple[Quantity, ...]) -> list[str]:
+        """Return a value for each of several components that are said to be equal, ``ω_r = ω_φ = k``."""
+        statement = self.sides.statements(place, text)[0]
+        sides = statement.sides
+        leading = sides[: len(names)]
+        each = [sum(self.is_asked(side, name) for side in leading) for name in names]
+        if len(names) < 2 or len(sides) <= len(names) or each != [1] * len(names):
+            return []
+        return [field_texts.whole_statement(replace(statement, sides=sides[len(names) :]), text)] * len(names)
 
     def in_order(self, place: str, texts: Sequence[str], names: tuple[Quantity, ...]) -> list[str]:
         """Return components in the order that is asked for, where their left sides say another one."""
