@@ -274,6 +274,12 @@ class Builder:
                 self.refuse(
                     node, f"the rate of {symbol} is no symbol of this question", "write the derivative out"
                 )
+            if str(symbol) in self.scope.dependent:
+                self.refuse(
+                    node,
+                    f"does {symbol} depend on {self.scope.time} here, or is it held fixed?",
+                    "write the derivative out",
+                )
         return time_derivative(f, q, self.scope.time)
 
     def partial(self, node: syntax.Call) -> Expr:

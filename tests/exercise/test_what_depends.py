@@ -46,6 +46,8 @@ def verdict(base, key, answer):
         (SLOW | {"order": 1}, "I", f"{J0} + Derivative(w(tau), t)*q*p/(2*w(tau)^2)"),
         (SLOW, "I", f"{J0} + q^2*Derivative(w(tau), t)/eps"),
         (SLOW, "I", f"{J0} + q^2*Derivative(tau, t)/eps"),
+        (SLOW | {"order": 1}, "I", f"{J0} + d/dt(w(tau))*q*p/(2*w(tau)^2)"),
+        (SLOW | {"order": 1}, "I", f"{J0} + dw/dt*q*p/(2*w(tau)^2)"),
         (SLOW, "I", f"{J0} + q^2*∂tau/∂t/eps"),
         (SLOW | {"order": 1}, "I", f"{J0} + q*Derivative(w(tau)**2, t)"),
         (MORSE, "omega", ["a*sqrt(2*(D-E)/m) + ∂E/∂J"]),
@@ -175,3 +177,12 @@ def test_rates_are_called_by_their_own_names(said):
             "rates",
             {"x": said.replace("x' =", "x =").replace("dx/dt =", "x'' =").replace(r"\dot x =", "v =")},
         )
+
+
+@pytest.mark.parametrize("said", [f"{J0} + w' q*p/(2*w(tau)^2)", r"$\frac{p^2+w^2q^2}{2w} + \frac{w' q p}{2w^2}$"])
+def test_a_prime_of_what_changes_slowly_is_asked_about(said):
+    base = SLOW | {"order": 1}
+    with pytest.raises(InvalidClaim, match="is w' the derivative by tau, or by t"):
+        verdict(base, "I", said)
+    by_tau = said.replace("w' q", "eps w'(tau) q" if "$" not in said else r"\epsilon w'(\tau) q")
+    assert verdict(base, "I", by_tau).holds

@@ -286,8 +286,11 @@ class Meaning:
             if not function.order:
                 return raised(Name(function.name, 0, head.column), head.exponent), at + 1
             names = self.scope.functions[function.name]
-            arguments: tuple[Node, ...] = tuple(Name(name, 0, head.column) for name in names)
-            return raised(self._rate(function, arguments), head.exponent), at + 1
+            if self.scope.dependent.intersection(names) and not function.dotted:
+                reason = f"is {function.name}' the derivative by {names[0]}, or by {self.scope.time.name}?"
+                self.refuse(function.column, reason, rf"write \frac{{d{function.name}}}{{d{names[0]}}}")
+            variables = tuple(Name(name, 0, head.column) for name in names)
+            return raised(self._rate(function, variables), head.exponent), at + 1
         inner = self.node(group)
         arguments = inner.items if isinstance(inner, Tuple) else (inner,)
         after = following.exponent if isinstance(following, Powered) else None

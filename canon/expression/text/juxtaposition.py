@@ -278,6 +278,13 @@ class Reader(FactorParser):
         if not token.primes:
             return self.called(token) if bracket else Name(token.text, 0, token.column)
         variables = self.scope.functions[token.text]
+        if not bracket and self.scope.dependent.intersection(variables):
+            clock, slow = self.scope.time.name, variables[0]
+            raise self.fault(
+                f"is {token.text}' the derivative by {slow}, or by {clock}?",
+                f"write Derivative({token.text}({slow}), {slow})",
+                token,
+            )
         arguments = with_brackets(self) if bracket else tuple(Name(v, 0, token.column) for v in variables)
         if len(variables) != 1 or len(arguments) != 1:
             raise self.fault(
