@@ -38,6 +38,9 @@ _LEAP = 16
 _MANY = 32
 """From so many kept states on they are passed in compiled code: there is one leap after the other."""
 
+_PATIENCE, _LIFETIME = 2**20, 2.0**50
+"""After so many steps a motion that needs so many more is given up: they would take years."""
+
 
 @dataclass(frozen=True, eq=False)
 class StepEnd:
@@ -101,6 +104,7 @@ class TransformedOrbit:
         )
         self._pace, self._stride, self._still = _LEAP, float(frame.step), 0
         self._stand(step_end.state)
+        self._begun = self.n, self.time
         self.locator = EventLocator(frame.system, steps, events)
         self.kept = np.zeros(2 + 3 * len(events))
         self.kept[0] = self.forward
@@ -195,9 +199,26 @@ class TransformedOrbit:
 
     def _safe(self, there: float) -> int:
         """Return how many steps surely end before a time, as far as the latest ones tell."""
+        self._check_pace(there)
         if self.events or not self._stride:
             return 0
         return min(self._pace, int(min(abs(there - self.time) / self._stride / 2, 2.0**40)))
+
+    def _check_pace(self, there: float) -> None:
+        """Make sure that a time can be reached: after a million steps what is left is no lifetime of them.
+
+        Raises
+        ------
+        ArithmeticError
+            It is.
+        """
+        taken, left = self.n - self._begun[0], abs(there - self.time)
+        gone = abs(self.time - self._begun[1])
+        if taken >= _PATIENCE and gone * _LIFETIME < left * taken:
+            raise ArithmeticError(
+                f"after {taken:,} steps the time has gone on by {gone:.3g}, and {left:.3g} are left: dt/ds is too small "
+                "for this motion; scale the time by another g, or take steps of one size"
+            )
 
     def _watched(self, steps: int, there: float) -> None:
         """Take steps one by one until the time has come or an event may have happened."""
