@@ -179,7 +179,9 @@ def test_rates_are_called_by_their_own_names(said):
         )
 
 
-@pytest.mark.parametrize("said", [f"{J0} + w' q*p/(2*w(tau)^2)", r"$\frac{p^2+w^2q^2}{2w} + \frac{w' q p}{2w^2}$"])
+@pytest.mark.parametrize(
+    "said", [f"{J0} + w' q*p/(2*w(tau)^2)", r"$\frac{p^2+w^2q^2}{2w} + \frac{w' q p}{2w^2}$"]
+)
 def test_a_prime_of_what_changes_slowly_is_asked_about(said):
     base = SLOW | {"order": 1}
     with pytest.raises(InvalidClaim, match="is w' the derivative by tau, or by t"):

@@ -150,10 +150,14 @@ def test_every_start_moves_as_by_propagate(which, data):
 
 
 @pytest.mark.parametrize("by", KEPLERS[2:])
-@pytest.mark.parametrize("start", [[1e200, 0.0, 0.3, 1.2], [1.0, 1e200, 1e-30, 0.3], [1e200, -0.7, 1e-30, -0.7]])
+@pytest.mark.parametrize(
+    "start", [[1e200, 0.0, 0.3, 1.2], [1.0, 1e200, 1e-30, 0.3], [1e200, -0.7, 1e-30, -0.7]]
+)
 def test_a_time_that_would_take_years_to_come_is_given_up(start, by):
     """dt/ds is 10⁻¹⁸³ a step there: these waited for as long as anybody let them."""
-    with pytest.raises(ArithmeticError, match=r"the time has gone on by \S+e-\d+, and \S+ are left: dt/ds is too small"):
+    with pytest.raises(
+        ArithmeticError, match=r"the time has gone on by \S+e-\d+, and \S+ are left: dt/ds is too small"
+    ):
         propagate("kepler", (0, 2), start, **by)
 
 

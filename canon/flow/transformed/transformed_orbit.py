@@ -216,8 +216,8 @@ class TransformedOrbit:
         gone = abs(self.time - self._begun[1])
         if taken >= _PATIENCE and gone * _LIFETIME < left * taken:
             raise ArithmeticError(
-                f"after {taken:,} steps the time has gone on by {gone:.3g}, and {left:.3g} are left: dt/ds is too small "
-                "for this motion; scale the time by another g, or take steps of one size"
+                f"after {taken:,} steps the time has gone on by {gone:.3g}, and {left:.3g} are left: dt/ds is too "
+                "small for this motion; scale the time by another g, or take steps of one size"
             )
 
     def _watched(self, steps: int, there: float) -> None:
