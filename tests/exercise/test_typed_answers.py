@@ -139,7 +139,7 @@ def test_vectors_of_thousands_are_refused_at_once(claim):
         ("∫ k x dx", "a lower and an upper limit"),
         ("Sum(k*x**n, (n, 1, 10**9))", "from 1 to 100 terms"),
         (r"$\sum_{n=1}^{10^9} k x^n$", "numbers up to 9"),
-        ("x' = ±k", "it stands for two answers"),
+        ("x' = ±k ± x", "is each ± chosen by itself here"),
         ("Matrix([[k, 0], [0, k]])", "write the components one by one"),
         (
             f"Matrix([{', '.join('[' + ', '.join('1' * 50) + ']' for _ in range(100))}])",

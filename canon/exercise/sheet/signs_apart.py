@@ -47,9 +47,9 @@ def signs_apart(claim: Claim, fault: _Fault) -> tuple[Claim, ...]:
     Examples
     --------
     >>> from canon.exercise import Claim
-    >>> two = signs_apart(Claim("a", "equality-only", {"lhs": "±x", "rhs": "x"}), lambda key, error: error)
-    >>> [each.keys["lhs"] for each in two]
-    ['+x', '-x']
+    >>> claim = Claim("a", "constant-of-motion", {"q": "q", "p": "p", "H": "p**2/2", "I": "t ± q/p"})
+    >>> [each.keys["I"] for each in signs_apart(claim, lambda key, error: error)]
+    ['t + q/p', 't - q/p']
     """
     kind = kind_of(claim.kind, claim.keys)
     signed = [

@@ -349,7 +349,8 @@ class _Plain:
         texts: list[Any] = value if isinstance(value, list) else [value]
         names = components_asked(place, self.of.keys, self.scope)
         if len(texts) == 1 and isinstance(texts[0], str):
-            texts = self.of_all(place, texts[0], names) or self.apart(place, texts[0])
+            apart = self.apart(place, texts[0])
+            texts = apart if len(apart) > 1 else self.of_all(place, texts[0], names) or apart
         if len(texts) == len(names) > 1 and all(type(text) is str for text in texts):
             texts = self.in_order(place, texts, names)
         found: list[Any] = []
@@ -374,8 +375,7 @@ class _Plain:
     def of_all(self, place: str, text: str, names: tuple[Quantity, ...]) -> list[str]:
         """Return a value for each of several components that are said to be equal, ``ω_r = ω_φ = k``."""
         statement = self.sides.statements(place, text)[0]
-        sides = statement.sides
-        leading = sides[: len(names)]
+        leading, sides = statement.sides[: len(names)], statement.sides
         each = [sum(self.is_asked(side, name) for side in leading) for name in names]
         if len(names) < 2 or len(sides) <= len(names) or each != [1] * len(names):
             return []
