@@ -167,6 +167,13 @@ def test_adiabatic_invariants_by_the_energy(right, wrong):
     assert verdict("adiabatic-invariant", SLOW, I=wrong) == "FAILS"
 
 
+@pytest.mark.parametrize("said", ["H", "E", "H^2", "I = H", "H/m"])
+def test_that_the_energy_is_constant_says_nothing(said):
+    """Of any system: the question asks for the constant of this one."""
+    with pytest.raises(InvalidClaim):
+        verdict("constant-of-motion", OSCILLATOR | {"parameters": {"m": "positive", "w": "positive"}}, I=said)
+
+
 def test_the_energy_is_no_letter_where_it_is_declared():
     """With E a parameter, E/w is a number of its own and no constant that says anything of the motion."""
     keys = SLOW | {"parameters": SLOW["parameters"] | {"E": "positive"}}

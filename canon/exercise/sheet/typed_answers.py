@@ -50,8 +50,6 @@ __all__ = ["Link", "TypedAnswers", "typed_answers"]
 
 _EQUATIONS = ("claim", "constraints", "restrict", "equations", "implicit", "leaves", "integrals", "boundary")
 _UNTOUCHED = ("domain", "class")
-_BY_ENERGY = ("I", "J", "omega")
-"""Keys of what books give as a function of the energy."""
 
 
 class Link(NamedTuple):
@@ -260,8 +258,10 @@ class _Plain:
         return Link(place, " = ".join(plain), left)
 
     def written_out(self, place: str, side: Side) -> str:
-        """Return the text of an answer, with H put in where an action, a frequency or an invariant is said by it."""
-        if key_at(place) not in _BY_ENERGY or not re.search(r"[HE]", side.text) or self.sides.can_read(side):
+        """Return the text of an answer, with H put in where J, ω or an adiabatic invariant is said by it."""
+        by_energy = ("J", "omega", "I")[: 2 + ("slow" in self.kind.shapes)]  # I = H says nothing elsewhere
+        known = key_at(place) not in by_energy or not re.search(r"[HE]", side.text)
+        if known or self.sides.can_read(side):
             return side.text
         said = self.sides.given(place).put_in(side.text)
         return side.text if said is None else str(said)
