@@ -14,7 +14,7 @@ from unittest import mock
 
 from canon import Splitting, Taylor, WisdomHolman, propagate
 from canon.flow import prepare
-from canon.flow.fixed_step import compiled_loop
+from canon.flow.fixed_step import compiled_loop, kept_loops
 from canon.flow.run import observables_along
 from canon.kernel.llvm import kept_code, machine_code
 from canon.scene import find
@@ -116,7 +116,7 @@ def made_anew(run: Callable[[], Any]) -> float:
         spent.append(more)
         return found
 
-    for kept in vars(compiled_loop).values():
+    for kept in (*vars(compiled_loop).values(), *vars(kept_loops).values()):
         if hasattr(kept, "cache_clear"):
             kept.cache_clear()
     with mock.patch("canon.kernel.llvm.loop.compiled", timed):

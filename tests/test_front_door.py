@@ -49,16 +49,48 @@ def test_an_unknown_name_is_an_attribute_error():
     assert not hasattr(canon, "poison_bracket")
 
 
-def loaded_after(statement: str) -> set[str]:
-    code = f"{statement}\nimport sys\nprint(' '.join({{name.split('.')[0] for name in sys.modules}}))"
+def modules_after(statement: str) -> set[str]:
+    code = f"{statement}\nimport sys\nprint(' '.join(sys.modules))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     return set(done.stdout.split())
+
+
+def loaded_after(statement: str) -> set[str]:
+    return {name.split(".")[0] for name in modules_after(statement)}
 
 
 def test_import_canon_loads_no_room():
     assert not {"sympy", "numpy", "scipy", "heyoka", "llvmlite", "matplotlib", "flint"} & loaded_after(
         "import canon"
     )
+
+
+MOVED = (
+    "import canon\n"
+    "x = canon.coordinates('x')\n"
+    "H = canon.Hamiltonian(x.momentum**2/2 + x**4/4, x, x.momentum)\n"
+    "canon.propagate(H, (0, 1), [1.0, 0.0], method={method}, step={step})"
+)
+NOT_ASKED_FOR = {
+    "heyoka",
+    "canon.proof.vanish",
+    "canon.flow.equations.lagrangian_motion",
+    "canon.kernel.magnetic.boris",
+}
+
+
+@pytest.mark.parametrize(
+    ("method", "step", "own", "other"),
+    [
+        ("'verlet'", 0.1, "canon.kernel.loops.splitting", "canon.kernel.loops.gauss"),
+        ("canon.Gauss(3)", 0.1, "canon.kernel.loops.gauss", "canon.kernel.loops.splitting"),
+        ("canon.DOP853()", None, "canon.flow.adaptive.dop853", "canon.flow.adaptive.taylor_motion"),
+    ],
+)
+def test_a_motion_loads_no_proofs_and_no_other_method(method, step, own, other):
+    loaded = modules_after(MOVED.format(method=method, step=step))
+    assert own in loaded
+    assert not {other, *NOT_ASKED_FOR} & loaded
 
 
 def test_a_verdict_needs_no_integrator():

@@ -77,6 +77,7 @@ def _asked(reading: Reading) -> Iterator[tuple[Reading, Question]]:
 
 
 def _of_one_sign(reading: Reading) -> Iterator[Question]:
+    """Yield what a claim without ``±`` comes down to."""
     yield from other_variables(reading)
     judge_of_kind = named_function("canon.exercise.judges", reading.kind.judge)
     inside = {"ask": questions} if reading.kind.about else {}

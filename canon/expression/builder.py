@@ -133,8 +133,7 @@ class Builder:
                 "one or two primes after a coordinate; for a function write Derivative(f(t), t)",
             )
         if node.text in self.scope.functions:
-            variables = tuple(syntax.Name(name, 0, node.column) for name in self.scope.functions[node.text])
-            return self.call(syntax.Call(node.text, variables, node.column))
+            return self.call(self.at_its_variables(node))
         if node.text in CONSTANTS:
             return CONSTANTS[node.text]
         if node.text == "i" and not self.scope.declares("I"):
@@ -142,6 +141,11 @@ class Builder:
         if node.text in FUNCTIONS:
             self.refuse(node, f"{node.text} needs its argument in parentheses")
         return self.refuse(node, f"{node.text} is not declared", self.scope.near(node.text))
+
+    def at_its_variables(self, node: syntax.Name) -> syntax.Call:
+        """Return V(x) for the name V of a declared function."""
+        variables = (syntax.Name(name, 0, node.column) for name in self.scope.functions[node.text])
+        return syntax.Call(node.text, tuple(variables), node.column)
 
     def value(self, node: syntax.Node, name: str, symbol: Symbol) -> Expr:
         """Return a symbol, or what its name abbreviates."""
@@ -239,12 +243,12 @@ class Builder:
         )
         by_hidden = variable.name in self.scope.dependent and variable not in value.free_symbols and held
         if value != variable and (hidden or by_hidden or bare):
-            what = ", ".join(hidden) or name or str(value)
-            self.refuse(
-                node,
-                f"does {what} depend on {variable} here, or is it held fixed?",
-                "write the derivative out",
-            )
+            self.ask_about(node, ", ".join(hidden) or name or str(value), variable)
+
+    def ask_about(self, node: syntax.Node, what: str, variable: Symbol) -> NoReturn:
+        """Refuse a derivative of what may depend on the variable in a way that is not written."""
+        reason = f"does {what} depend on {variable} here, or is it held fixed?"
+        self.refuse(node, reason, "write the derivative out")
 
     def _along(self, node: syntax.Call, value: Expr) -> bool:
         """Tell whether a derivative with respect to the time is one along the motion, as that of ``theta(t)``."""
@@ -275,11 +279,7 @@ class Builder:
                     node, f"the rate of {symbol} is no symbol of this question", "write the derivative out"
                 )
             if str(symbol) in self.scope.dependent:
-                self.refuse(
-                    node,
-                    f"does {symbol} depend on {self.scope.time} here, or is it held fixed?",
-                    "write the derivative out",
-                )
+                self.ask_about(node, str(symbol), self.scope.time)
         return time_derivative(f, q, self.scope.time)
 
     def partial(self, node: syntax.Call) -> Expr:
@@ -287,8 +287,7 @@ class Builder:
         operand, *rest = node.arguments
         variables, orders = rest[: len(rest) // 2], rest[len(rest) // 2 :]
         if isinstance(operand, syntax.Name) and operand.text in self.scope.functions:
-            arguments = tuple(syntax.Name(a, 0, operand.column) for a in self.scope.functions[operand.text])
-            operand = syntax.Call(operand.text, arguments, operand.column)
+            operand = self.at_its_variables(operand)
         if node.function == "d/dx" and not (
             isinstance(operand, syntax.Call)
             and operand.function in self.scope.functions

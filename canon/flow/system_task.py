@@ -165,7 +165,8 @@ def _full_states(
 ) -> tuple[Array, Array]:
     """Return the states with what is integrated along unseen, each of shape (2n, orbits)."""
     numbers = [
-        [double_pair(_one(value, name)) for value in values.tolist()] for name, values in varying.items()
+        [double_pair(exact_number(value, name)) for value in values.tolist()]
+        for name, values in varying.items()
     ]
     if moving.contacts is not None:
         numbers += [[double_pair(value)] for value in moving.contacts.hidden.values()]
@@ -179,10 +180,6 @@ def _full_states(
         rest = np.zeros((spare, orbits))
         made.append(np.concatenate([visible[:half], still, own, visible[half:], rest, still, own]))
     return made[0], made[1]
-
-
-def _one(value: Any, name: str) -> Fraction:
-    return exact_number(value, name)
 
 
 def _contacts_at_start(motion: FirstOrderMotion, orbits: int) -> dict[Symbol, Any]:

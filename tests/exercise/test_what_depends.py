@@ -188,3 +188,14 @@ def test_a_prime_of_what_changes_slowly_is_asked_about(said):
         verdict(base, "I", said)
     by_tau = said.replace("w' q", "eps w'(tau) q" if "$" not in said else r"\epsilon w'(\tau) q")
     assert verdict(base, "I", by_tau).holds
+
+
+def test_coordinates_and_momenta_are_independent_in_hamiltons_equations():
+    """{q, H} and {p, H} written out hold derivatives of q by p, which are 0 there."""
+    base = {
+        "kind": "hamilton-equations", "q": ["q"], "p": ["p"], "functions": {"H": ["q", "p"]}, "H": "H(q, p)",
+        "q_dot": ["Derivative(q, q)*Derivative(H(q, p), p) - Derivative(q, p)*Derivative(H(q, p), q)"],
+    }  # fmt: skip
+    bracket = "Derivative(p, q)*Derivative(H(q, p), p) {} Derivative(p, p)*Derivative(H(q, p), q)"
+    assert verdict(base, "p_dot", [bracket.format("-")]).holds
+    assert verdict(base, "p_dot", [bracket.format("+")]).fails

@@ -4,7 +4,9 @@ from fractions import Fraction
 
 import pytest
 
+from canon.flow.method.engine import needs_hamiltonian
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor, TimeTransformed
+from canon.flow.system.equations_for_method import KEEPING_CONSTRAINTS
 from canon.kernel.schemes.splitting_schemes import SCHEMES
 
 
@@ -68,3 +70,8 @@ def test_tolerances_are_checked_and_shown():
             Taylor(wrong)
         with pytest.raises(ValueError, match="between 0 and 1"):
             DOP853(wrong)
+
+
+def test_methods_that_keep_constraints_need_no_hamiltonian():
+    assert not any(map(needs_hamiltonian, KEEPING_CONSTRAINTS))
+    assert all(map(needs_hamiltonian, ("splitting", "solvable", "boris")))

@@ -12,7 +12,8 @@ import sympy as sp
 
 from canon.expression.symbols.symbol import coordinates
 from canon.expression.symbols.symbol import time as t
-from canon.flow.fixed_step.compiled_loop import _kept_splitting, compiled_loop
+from canon.flow.fixed_step.compiled_loop import compiled_loop
+from canon.flow.fixed_step.kept_loops import kept_splitting
 from canon.flow.method.method import Splitting
 from canon.flow.method.number_formats import FIXED
 from canon.flow.propagation import propagate
@@ -115,7 +116,7 @@ def test_loops_give_the_written_out_motion(
     rolled = end()
     asked: list[HamiltonEquations] = []
     monkeypatch.setattr(splitting, "pair_forces", asked.append)  # which finds none
-    _kept_splitting.cache_clear()  # or the loop of before would be taken again
+    kept_splitting.cache_clear()  # or the loop of before would be taken again
     written_out = end()
     assert asked
     bound = {"single": 2e-5, "double": 1e-13, "compensated": 1e-13}.get(precision, 2e-15)
@@ -138,7 +139,7 @@ def test_all_alike_and_one_heavy_body(heavy: int, monkeypatch: pytest.MonkeyPatc
     rolled = propagate(H, (0, 1), start(len(q))[:, 0], **by).y[:, -1]
     asked: list[HamiltonEquations] = []
     monkeypatch.setattr(splitting, "pair_forces", asked.append)
-    _kept_splitting.cache_clear()
+    kept_splitting.cache_clear()
     written_out = propagate(H, (0, 1), start(len(q))[:, 0], **by).y[:, -1]
     assert asked
     assert abs(rolled - written_out).max() < 1e-13

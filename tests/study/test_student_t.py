@@ -77,4 +77,4 @@ def test_the_place_where_a_tail_falls_to_a_value_is_found_in_few_looks(freedom, 
     expected = -stdtrit(freedom, value)
     if expected < 900:
         assert abs(_place_of(tail, value) - expected) < 1e-7 * max(1.0, expected)
-    assert len(looks) < 30
+    assert len(looks) < 25  # halving takes forty

@@ -242,20 +242,18 @@ class _Plain:
                 made = self.sides.origin(place, side, sides[-1])
                 self.found.links += [Link(place, each, each.partition(" = ")[0]) for each in made]
             else:
-                if self.written_out(place, side) == side.text:
-                    self.read(place, text, side, asked)
+                self.read(place, text, side, asked)
                 readable.append(side)
         readable.append(sides[-1])
         self.found.links += [self.link(place, a, b) for a, b in pairwise(readable)]
         return self.written_out(place, sides[-1])
 
     def link(self, place: str, a: Side, b: Side) -> Link:
-        """Return the equation between two sides of a chain, H put in where they are said by it."""
-        left, right = self.written_out(place, a), self.written_out(place, b)
-        if (left, right) == (a.text, b.text):
+        """Return the equation between two sides of a chain, H put in where the last is said by it."""
+        right = self.written_out(place, b)
+        if right == b.text:
             return Link(place, field_texts.equation_between(a, b), a.text)
-        plain = (str(parse_expression(made, self.scope)) for made in (left, right))
-        return Link(place, " = ".join(plain), left)
+        return Link(place, f"{parse_expression(a.text, self.scope)} = {right}", a.text)
 
     def written_out(self, place: str, side: Side) -> str:
         """Return the text of an answer, with H put in where J, ω or an adiabatic invariant is said by it."""

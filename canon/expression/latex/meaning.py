@@ -33,7 +33,7 @@ from canon.expression.latex.printed_forms import refuse_open_e
 from canon.expression.latex.quotient import shown
 from canon.expression.latex.understood_time import has_rate_or_is_momentum, without_time
 from canon.expression.text.differentials import PRIMED
-from canon.expression.text.open_readings import DECLARED_E, looks_like_eulers
+from canon.expression.text.open_readings import DECLARED_E, looks_like_eulers, prime_in_doubt
 from canon.expression.text.syntax import Call, LanguageError, Name, Node, Number, Power, Product, Tuple
 
 if TYPE_CHECKING:
@@ -286,11 +286,10 @@ class Meaning:
             if not function.order:
                 return raised(Name(function.name, 0, head.column), head.exponent), at + 1
             names = self.scope.functions[function.name]
-            if self.scope.dependent.intersection(names) and not function.dotted:
-                reason = f"is {function.name}' the derivative by {names[0]}, or by {self.scope.time.name}?"
-                self.refuse(function.column, reason, rf"write \frac{{d{function.name}}}{{d{names[0]}}}")
-            variables = tuple(Name(name, 0, head.column) for name in names)
-            return raised(self._rate(function, variables), head.exponent), at + 1
+            if (doubt := prime_in_doubt(function.name, self.scope)) and not function.dotted:
+                self.refuse(function.column, doubt, rf"write \frac{{d{function.name}}}{{d{names[0]}}}")
+            places = tuple(Name(name, 0, head.column) for name in names)
+            return raised(self._rate(function, places), head.exponent), at + 1
         inner = self.node(group)
         arguments = inner.items if isinstance(inner, Tuple) else (inner,)
         after = following.exponent if isinstance(following, Powered) else None

@@ -14,7 +14,13 @@ from unicodedata import numeric
 from canon.expression.text.applied_functions import applied, constructed, is_function, with_brackets
 from canon.expression.text.differentials import PARTIAL, PRIMED, derivative, of_operator
 from canon.expression.text.factor_parser import CLOSING, FactorParser
-from canon.expression.text.open_readings import DECLARED_E, counts, is_angle, looks_like_eulers
+from canon.expression.text.open_readings import (
+    DECLARED_E,
+    counts,
+    is_angle,
+    looks_like_eulers,
+    prime_in_doubt,
+)
 from canon.expression.text.quotients import divisor, ended
 from canon.expression.text.syntax import (
     Call,
@@ -278,13 +284,8 @@ class Reader(FactorParser):
         if not token.primes:
             return self.called(token) if bracket else Name(token.text, 0, token.column)
         variables = self.scope.functions[token.text]
-        if not bracket and self.scope.dependent.intersection(variables):
-            clock, slow = self.scope.time.name, variables[0]
-            raise self.fault(
-                f"is {token.text}' the derivative by {slow}, or by {clock}?",
-                f"write Derivative({token.text}({slow}), {slow})",
-                token,
-            )
+        if not bracket and (doubt := prime_in_doubt(token.text, self.scope)):
+            raise self.fault(doubt, f"write Derivative({token.text}({variables[0]}), {variables[0]})", token)
         arguments = with_brackets(self) if bracket else tuple(Name(v, 0, token.column) for v in variables)
         if len(variables) != 1 or len(arguments) != 1:
             raise self.fault(

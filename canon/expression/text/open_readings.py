@@ -12,7 +12,7 @@ from canon.expression.text.syntax import Name, Node, parts
 if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
 
-__all__ = ["DECLARED_E", "counts", "is_angle", "looks_like_eulers", "stem_of"]
+__all__ = ["DECLARED_E", "counts", "is_angle", "looks_like_eulers", "prime_in_doubt", "stem_of"]
 
 _ANGLES = ("theta", "vartheta", "phi", "varphi", "psi", "th", "ph")
 """Letters that are angles in any book."""
@@ -56,6 +56,22 @@ def looks_like_eulers(base: Node, exponent: Node, scope: Scope) -> bool:
     names = [part for part in parts(exponent) if isinstance(part, Name)]
     imaginary = any(name.text == "I" and not scope.declares("I") for name in names)
     return imaginary or any(name.primes or scope.moves(name.text) for name in names)
+
+
+def prime_in_doubt(function: str, scope: Scope) -> str:
+    """Return what to ask of a prime behind a function of a slow time, by which or by t it may be; nothing of others.
+
+    Examples
+    --------
+    >>> from canon.expression.text.scope import Scope
+    >>> slow = Scope({}, {"w": ("tau",)}, dependent=frozenset({"tau"}))
+    >>> prime_in_doubt("w", slow), prime_in_doubt("w", Scope({}, {"w": ("tau",)}))
+    ("is w' the derivative by tau, or by t?", '')
+    """
+    variables = scope.functions[function]
+    if not scope.dependent.intersection(variables):
+        return ""
+    return f"is {function}' the derivative by {variables[0]}, or by {scope.time.name}?"
 
 
 def stem_of(name: str) -> str:

@@ -1,7 +1,4 @@
-"""Compiled loop of a fixed-step method: compiled once, then kept, with the coefficients that it reads.
-
-What writes the loop of a family is imported when the first loop of that family is asked for.
-"""
+"""Compiled loop of a fixed-step method: compiled once, then kept, with the coefficients that it reads."""
 
 from __future__ import annotations
 
@@ -9,6 +6,20 @@ import dataclasses
 import functools
 from typing import TYPE_CHECKING, Any
 
+from canon.flow.fixed_step.kept_loops import (
+    kept_boris,
+    kept_galerkin,
+    kept_gauss,
+    kept_lie_poisson,
+    kept_magnetic,
+    kept_mixing,
+    kept_nonholonomic,
+    kept_projecting,
+    kept_rattle,
+    kept_runge_kutta,
+    kept_solvable,
+    kept_splitting,
+)
 from canon.flow.fixed_step.partial_step import PartialSteps
 from canon.flow.fixed_step.step_coefficients import step_coefficients
 from canon.flow.method.composition import weights_of_order
@@ -35,7 +46,7 @@ if TYPE_CHECKING:
 __all__ = ["check_splitting", "compiled_loop", "loop_by_solvable_parts", "steps_between"]
 
 _KEPT = 64
-"""Compiled loops kept for the next call."""
+"""Steps between those of a run kept for the next call."""
 
 _FEW_STOPS = 1001
 """What is read of plans with so many samples is kept for the next motion that has the same plan."""
@@ -74,7 +85,7 @@ def _gauss(
     system: HamiltonEquations, method: Gauss | AverageVectorField, precision: Precision, _orbits: int
 ) -> Loop:
     newton = method.iteration == "newton"
-    return _kept_gauss(
+    return kept_gauss(
         system, method.stages, precision.number, compensated=precision.compensated, newton=newton
     )
 
@@ -83,15 +94,13 @@ def _extended(
     system: HamiltonEquations, method: ExtendedPhaseSpace, precision: Precision, orbits: int
 ) -> Loop:
     number = _with_lanes(precision.number, system, orbits, 0)
-    return _kept_mixing(
-        system, len(weights_of_order(method.order)), number, compensated=precision.compensated
-    )
+    return kept_mixing(system, len(weights_of_order(method.order)), number, compensated=precision.compensated)
 
 
 def _semiexplicit(
     system: HamiltonEquations, method: SemiexplicitSplitting, precision: Precision, _orbits: int
 ) -> Loop:
-    return _kept_projecting(
+    return kept_projecting(
         system, len(weights_of_order(method.order)), precision.number, compensated=precision.compensated
     )
 
@@ -103,7 +112,7 @@ def _rattle(system: HamiltonEquations, method: Rattle, precision: Precision, _or
             "apply"
         )
     weights = len(weights_of_order(method.order))
-    return _kept_rattle(system, weights, precision.number, compensated=precision.compensated)
+    return kept_rattle(system, weights, precision.number, compensated=precision.compensated)
 
 
 def _nonholonomic(
@@ -115,7 +124,7 @@ def _nonholonomic(
             "Splitting, Gauss and Taylor apply"
         )
     weights = len(weights_of_order(method.order))
-    return _kept_nonholonomic(system, weights, precision.number, compensated=precision.compensated)
+    return kept_nonholonomic(system, weights, precision.number, compensated=precision.compensated)
 
 
 def _galerkin(
@@ -126,7 +135,7 @@ def _galerkin(
             "GalerkinVariational is for a Lagrangian, with its forces, and this is none; Splitting, Gauss and Taylor "
             "apply"
         )
-    return _kept_galerkin(
+    return kept_galerkin(
         system, method.degree, method.nodes, precision.number, compensated=precision.compensated
     )
 
@@ -140,24 +149,24 @@ def _lie_poisson(
             "Splitting, Gauss and Taylor apply"
         )
     number, weights = _with_lanes(precision.number, system, orbits, 0), len(weights_of_order(method.order))
-    return _kept_lie_poisson(system, weights, number, compensated=precision.compensated)
+    return kept_lie_poisson(system, weights, number, compensated=precision.compensated)
 
 
 def _boris(system: HamiltonEquations, method: Boris, precision: Precision, orbits: int) -> Loop:
     number, weights = _with_lanes(precision.number, system, orbits, 0), len(weights_of_order(method.order))
-    return _kept_boris(system, weights, number, compensated=precision.compensated)
+    return kept_boris(system, weights, number, compensated=precision.compensated)
 
 
 def _magnetic(
     system: HamiltonEquations, method: MagneticSplitting, precision: Precision, orbits: int
 ) -> Loop:
     number, weights = _with_lanes(precision.number, system, orbits, 0), len(weights_of_order(method.order))
-    return _kept_magnetic(system, weights, number, compensated=precision.compensated)
+    return kept_magnetic(system, weights, number, compensated=precision.compensated)
 
 
 def _runge_kutta(system: HamiltonEquations, _method: RK4, precision: Precision, orbits: int) -> Loop:
     number = _with_lanes(precision.number, system, orbits, 0)
-    return _kept_runge_kutta(system, number, compensated=precision.compensated)
+    return kept_runge_kutta(system, number, compensated=precision.compensated)
 
 
 def check_splitting(system: HamiltonEquations, method: Splitting) -> None:
@@ -185,7 +194,7 @@ def _splitting(system: HamiltonEquations, method: Splitting, precision: Precisio
     stages = len(method.scheme.b)
     number = _with_lanes(precision.number, system, orbits, 0 if precision.compensated else stages)
     kick_first = method.scheme.kick_first and system.autonomous
-    return _kept_splitting(system, stages, number, compensated=precision.compensated, kick_first=kick_first)
+    return kept_splitting(system, stages, number, compensated=precision.compensated, kick_first=kick_first)
 
 
 def _solvable(
@@ -226,7 +235,7 @@ def loop_by_solvable_parts(
         raise UnsolvableError(
             "parameters that differ by orbit: splittings by solvable parts take one number for each"
         )
-    return _kept_solvable(system, method, precision, vectors, units)
+    return kept_solvable(system, method, precision, vectors, units)
 
 
 _LOOPS: dict[str, Callable[[HamiltonEquations, Any, Precision, int], Loop]] = {
@@ -258,145 +267,6 @@ def _with_lanes(number: MachineType, system: HamiltonEquations, orbits: int, sta
         many = waiting and len(system.q) <= _PLANE and stages >= _STAGES and orbits >= _MANY
         registers = 2 * _INTERLEAVED if many else _INTERLEAVED
     return dataclasses.replace(number, lanes=simd_bytes() // number.alignment * registers)
-
-
-@functools.lru_cache(maxsize=_KEPT)
-def _kept_splitting(
-    system: HamiltonEquations, stages: int, number: MachineType, *, compensated: bool, kick_first: bool
-) -> Loop:
-    from canon.kernel.loops.splitting import splitting_loop
-
-    return splitting_loop(system, stages, number=number, compensated=compensated, kick_first=kick_first)
-
-
-@functools.lru_cache(maxsize=_KEPT)
-def _kept_runge_kutta(system: HamiltonEquations, number: MachineType, *, compensated: bool) -> Loop:
-    from canon.kernel.llvm.loop import runge_kutta_loop
-
-    return runge_kutta_loop(system, number=number, compensated=compensated)
-
-
-@functools.lru_cache(maxsize=_KEPT)
-def _kept_gauss(
-    system: HamiltonEquations, stages: int, number: MachineType, *, compensated: bool, newton: bool
-) -> Loop:
-    from canon.kernel.loops.gauss import gauss_loop
-
-    return gauss_loop(system, stages, compensated=compensated, number=number, newton=newton)
-
-
-@functools.lru_cache(maxsize=_KEPT)
-def _kept_mixing(system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool) -> Loop:
-    from canon.kernel.loops.doubled_phase_space import mixing_loop
-
-    return mixing_loop(system, weights, number=number, compensated=compensated)
-
-
-@functools.lru_cache(maxsize=_KEPT)
-def _kept_projecting(
-    system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool
-) -> Loop:
-    from canon.kernel.loops.doubled_phase_space import projecting_loop
-
-    return projecting_loop(system, weights, number=number, compensated=compensated)
-
-
-@functools.lru_cache(maxsize=_KEPT)
-def _kept_rattle(system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool) -> Loop:
-    from canon.kernel.loops.rattle import rattle_loop
-
-    assert system.holonomic is not None
-    return rattle_loop(system, system.holonomic, weights, number=number, compensated=compensated)
-
-
-@functools.lru_cache(maxsize=_KEPT)
-def _kept_nonholonomic(
-    system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool
-) -> Loop:
-    from canon.kernel.loops.nonholonomic_leapfrog import nonholonomic_loop
-
-    assert system.nonholonomic is not None
-    return nonholonomic_loop(system, system.nonholonomic, weights, number=number, compensated=compensated)
-
-
-@functools.lru_cache(maxsize=_KEPT)
-def _kept_galerkin(
-    system: HamiltonEquations, degree: int, points: int, number: MachineType, *, compensated: bool
-) -> Loop:
-    from canon.kernel.discrete_action.galerkin_step import galerkin_loop
-
-    assert system.lagrangian is not None
-    return galerkin_loop(system, system.lagrangian, degree, points, compensated=compensated, number=number)
-
-
-@functools.lru_cache(maxsize=_KEPT)
-def _kept_lie_poisson(
-    system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool
-) -> Loop:
-    from canon.kernel.loops.lie_poisson import lie_poisson_loop
-
-    assert system.lie_poisson is not None
-    return lie_poisson_loop(system, system.lie_poisson, weights, number=number, compensated=compensated)
-
-
-@functools.lru_cache(maxsize=_KEPT)
-def _kept_boris(system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool) -> Loop:
-    from canon.kernel.magnetic.boris import boris_loop
-    from canon.kernel.magnetic.magnetic_form import magnetic_form
-
-    return boris_loop(system, magnetic_form(system), weights, number=number, compensated=compensated)
-
-
-@functools.lru_cache(maxsize=_KEPT)
-def _kept_magnetic(
-    system: HamiltonEquations, weights: int, number: MachineType, *, compensated: bool
-) -> Loop:
-    from canon.flow.fixed_step.gauge_integrals import gauge_shifts
-    from canon.kernel.magnetic.gauge_shifts import gauge_shift_loop
-
-    return gauge_shift_loop(system, gauge_shifts(system), weights, number=number, compensated=compensated)
-
-
-@functools.lru_cache(maxsize=64)
-def _kept_solvable(
-    system: HamiltonEquations,
-    method: SolvableSplitting,
-    precision: Precision,
-    vectors: int,
-    units: tuple[Fraction, ...],
-) -> Loop:
-    from canon.kernel.schemes.perturbed_schemes import corrector
-    from canon.kernel.solvable.solvable_loop import solvable_loop
-    from canon.kernel.solvable.solvable_parts import (
-        Centres,
-        Planets,
-        UnsolvableError,
-        named_part,
-        solvable_part,
-    )
-
-    part = solvable_part(system) if method.parts is None else named_part(system, *method.parts)
-    if isinstance(part, Planets | Centres) and len({len(body) for body in part.bodies}) > 1:
-        raise UnsolvableError(
-            "the bodies have different numbers of coordinates; give each as many, or name two parts"
-        )
-    chosen = corrector(method.scheme, method.corrector) if method.corrector else None
-    democratic = method.coordinates == "democratic-heliocentric"
-    if democratic and not isinstance(part, Planets):
-        raise UnsolvableError(
-            "democratic heliocentric coordinates are for planets about a star, which H is not"
-        )
-    return solvable_loop(
-        part,
-        len(system.q),
-        method.kicks,
-        chosen,
-        compensated=precision.compensated,
-        number=precision.number,
-        democratic=democratic,
-        vectors=vectors,
-        units=units,
-    )
 
 
 def steps_between(loop: Loop, method: Method, plan: Plan) -> PartialSteps:

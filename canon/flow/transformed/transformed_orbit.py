@@ -205,12 +205,12 @@ class TransformedOrbit:
         return min(self._pace, int(min(abs(there - self.time) / self._stride / 2, 2.0**40)))
 
     def _check_pace(self, there: float) -> None:
-        """Make sure that a time can be reached: after a million steps what is left is no lifetime of them.
+        """Make sure that a time can be reached, once there were steps enough to tell their pace.
 
         Raises
         ------
         ArithmeticError
-            It is.
+            At the pace so far it would take more steps than anybody waits for.
         """
         taken, left = self.n - self._begun[0], abs(there - self.time)
         gone = abs(self.time - self._begun[1])

@@ -133,7 +133,7 @@ def _place_of(falling: Callable[[float], float], value: float) -> float:
     """Return where a falling function that is ½ at 0 has a value below that, by false position.
 
     An end that stays twice is given half its weight (M. Dowell, P. Jarratt, BIT 11 (1971) 168,
-    doi:10.1007/BF01934364), so that a dozen looks do instead of forty.
+    doi:10.1007/BF01934364): fewer looks than halving takes.
     """
     low, above, high = 0.0, 0.5 - value, 1.0
     while (below := falling(high) - value) > 0.0 and high < _MOST_SIGMAS:

@@ -176,7 +176,7 @@ def _family(
     variances, axes = np.linalg.eigh(to_scatter @ walks @ to_scatter.T)
     alone = np.isinf(ratios)[:, np.newaxis]
     weights = np.where(alone, 1.0, ratios[:, np.newaxis])
-    spread = np.sqrt(~alone + weights * variances[basis_of])
+    spread = np.sqrt(np.where(alone, 0.0, 1.0) + weights * variances[basis_of])
     determinants = 2.0 * (np.sum(np.log(np.diagonal(factor))) + np.sum(np.log(spread), axis=1))
     bases = np.swapaxes(axes, 1, 2) @ to_scatter
     return _made(exponents, ratios, bases, basis_of, spread, determinants, windows)
