@@ -198,12 +198,17 @@ FEWER = (4, 7, 10, 14, 18, 24, 30)
 OF_WAYS = {"double": POWERS[::2], "quad": (7, 16, 30), "extended": FEWER, "tolerance": FEWER}
 
 
+def end(power: int, start: tuple[float, float]) -> float:
+    """Return 2, or a time of seventeen periods for the fastest, which take ten thousand steps to 2."""
+    return 0.25 if power >= 24 and start == STARTS[0] else 2.0
+
+
 def scan_wells(name: str, shape: str) -> None:
     for power, start in itertools.product(
         OF_WAYS.get(name, POWERS), STARTS[:3] if name == "quad" else STARTS
     ):
         H = SHAPES[shape](power)
-        motion = propagate(H, (0, 2), start, samples=4, **WAYS[name])
+        motion = propagate(H, (0, end(power, start)), start, samples=4, **WAYS[name])
         estimate = motion.error_estimate()
         where = f"{shape}, x^{power} from {start}: {estimate}"
         assert (missed(motion, start, H) <= estimate.error).all(), where
@@ -215,14 +220,15 @@ def scan_fields_and_ensembles(first: int, step: int) -> None:
     for power in POWERS[first::step]:
         even = power + power % 2
         H = well(even)
-        together = propagate(H, (0, 2), starts, samples=4)
+        t_span = (0, end(power, STARTS[0]))
+        together = propagate(H, t_span, starts, samples=4)
         stated = together.error_estimate().error
         field = VectorField((y, -sp.Rational(even, 8) * x ** (even - 1)), (x, y))
         for k, start in enumerate(STARTS):
-            by_quad = propagate(H, (0, 2), start, samples=4, precision="quad")
+            by_quad = propagate(H, t_span, start, samples=4, precision="quad")
             true, exact = missed(by_quad, start, H), by_quad.y
             assert true.max() < 1e-14
-            own = propagate(field, (0, 2), start, samples=4)
+            own = propagate(field, t_span, start, samples=4)
             assert (abs(own.y - exact) <= own.error_estimate().error + true).all()
             assert (abs(together.y[:, :, k] - exact) <= stated[:, :, k] + true).all()
 
