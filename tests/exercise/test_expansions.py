@@ -3,9 +3,11 @@
 import mpmath
 import pytest
 import sympy as sp
+from hypothesis import given
+from hypothesis import strategies as st
 
 from canon.exercise.claim_verdict import judge
-from canon.exercise.question.series_expansion import coefficient
+from canon.exercise.question.series_expansion import coefficient, coefficients
 from canon.exercise.sheet.sheet import Claim
 
 NAMES = dict.fromkeys(("m", "x", "A"), "real") | dict.fromkeys(("a", "l", "g"), "positive")
@@ -71,3 +73,38 @@ def test_coefficients_against_numbers(f):
         numbers = mpmath.taylor(g, 0, 5, singular=True)
     for k, number in enumerate(numbers):
         assert abs(complex(number) - complex(sp.N(coefficient(f, e, k), 20))) < 1e-9
+
+
+x = sp.Symbol("x", positive=True)
+leaves = st.sampled_from([e, x, 1 + e, x - e, sp.cos(x + e), sp.exp(e * x), sp.Integer(2)])
+powers = st.sampled_from([2, 3, -1, -2, sp.Rational(1, 2), sp.Rational(-3, 2), sp.Rational(5, 3)])
+
+
+def positive(f):
+    return sp.exp(f) if f.subs({e: 0, x: 1}).evalf() <= 0 else f
+
+
+functions = st.recursive(
+    leaves,
+    lambda parts: st.one_of(
+        st.lists(parts, min_size=2, max_size=3).map(lambda of: sp.Add(*of)),
+        st.lists(parts, min_size=2, max_size=3).map(lambda of: sp.Mul(*of)),
+        st.tuples(parts, powers).map(lambda of: positive(of[0]) ** of[1]),
+    ),
+    max_leaves=6,
+)
+
+
+@given(functions, st.integers(0, 4))
+def test_coefficients_are_those_of_derivatives(f, order):
+    """The second route is SymPy's derivative of the whole; both at x = 1."""
+    for k, c in enumerate(coefficients(f, e, order)):
+        derivative = (f.diff(e, k) if k else f).subs({e: 0, x: 1}) / sp.factorial(k)
+        left, right = sp.N(c.subs(x, 1), 30), sp.N(derivative, 30)
+        assert abs(left - right) <= 1e-20 * (1 + abs(right))
+
+
+def test_the_square_of_what_may_be_zero_has_no_quotient():
+    """At x = 1 the first coefficient of the base is 0; (x − 1 + e)² is a polynomial there too."""
+    assert coefficients((x - 1 + e) ** 2, e, 2) == [(x - 1) ** 2, 2 * x - 2, 1]
+    assert coefficients((x - 1 + e) ** 20, e, 1)[1].subs(x, 1) == 0

@@ -226,6 +226,30 @@ def test_halo_orbits_have_the_stability_of_the_catalogue(
     assert (largest + 1 / largest) / 2 == pytest.approx(index, rel=1e-8)
 
 
+LYAPUNOV = {
+    "L1, small": (0.830023864314168, 0.06088309999599009, 3.18515736797775, 2.702881200253821, 1300.72578337944),
+    "L1, larger": (0.8007325761918545, 0.35248700747556716, 3.07728036254377, 3.297097386764505, 425.868250560381),
+    "L1, large": (0.7076756180347542, 0.621513254358129, 2.94595078958827, 5.709795908302705, 64.0473059678341),
+    "L2, small": (1.1599891825364728, -0.023755466801822275, 3.1717305860487, 3.3740716677049702, 724.023759109433),
+    "L2, larger": (1.039766165259229, 0.6277452743730177, 3.03331847496241, 4.056819398703425, 164.905262178291),
+    "L2, by the Moon": (0.9994950073945017, 1.4487043957010053, 2.93992816431116, 6.275370831496941, 51.8820187401216),
+}  # fmt: skip
+"""Planar orbits of the catalogue between Earth and Moon: x, dy/dt, Jacobi's constant, period, index of stability."""
+
+
+@pytest.mark.parametrize("name", LYAPUNOV)
+def test_planar_orbits_of_lyapunov_between_earth_and_moon(name: str) -> None:
+    x0, rate, jacobi, period, index = LYAPUNOV[name]
+    mu = sp.Float("0.01215058560962404", 17)
+    H, energy = restricted(mu), -(jacobi - float(mu * (1 - mu))) / 2
+    guess = [x0 + 1e-7, 0, 0, 0, rate + x0 + 1e-7, 0]
+    found = periodic_orbit(H, guess, period + 1e-5, reversal=("y", "p_x", "p_z"), energy=energy)
+    assert found.y[[0, 2, 4]] == pytest.approx([x0, 0, rate + x0], abs=1e-9)
+    assert found.period == pytest.approx(period, abs=1e-9)
+    largest = abs(found.multipliers.values).max()
+    assert (largest + 1 / largest) / 2 == pytest.approx(index, rel=1e-7)
+
+
 def _energy(H: Hamiltonian, x0: float, z0: float, rate: float) -> float:
     start = dict(zip((*H.q, *H.p), (x0, 0, z0, 0, rate + x0, 0), strict=True))
     return float(H.H.subs(start))

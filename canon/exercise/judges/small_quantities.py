@@ -24,7 +24,7 @@ from canon.exercise.question.question import (
     decide,
     more_than_zero,
 )
-from canon.exercise.question.series_expansion import check_analytic, coefficient, without_kinks
+from canon.exercise.question.series_expansion import check_analytic, coefficient, coefficients, without_kinks
 from canon.exercise.sheet.sympy_trees import shown
 from canon.expression.symbols.symbol import acceleration, velocity
 from canon.expression.symbols.user_input import counted
@@ -266,7 +266,7 @@ def _expanded(f: Expr, small: Sequence[Symbol], order: int, domain: Domain) -> E
         start, _ = _order_of(below, epsilon, domain, Deadline.after(1.0))
         above = sp.series(above / below, epsilon, 0, order + 1).removeO() if start < MOST_ORDERS else above
         return shown_short(substitute(above, {epsilon: small[0] if len(small) == 1 else sp.S.One}))
-    terms = (coefficient(above, epsilon, k) * _power_of(small, k) for k in range(order + 1))
+    terms = (c * _power_of(small, k) for k, c in enumerate(coefficients(above, epsilon, order)))
     return sp.Add(*map(shown_short, terms))
 
 

@@ -7,6 +7,7 @@ Mathematical Functions, 17.3.11, 17.3.12; R. M. Corless et al., Adv. Comput. Mat
 
 from __future__ import annotations
 
+import functools
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -22,11 +23,14 @@ from canon.proof.kinks import vanishes_off_kinks
 from canon.proof.trees.sympy_types import arguments
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from canon.proof.domain.domain import Domain
 
-__all__ = ["check_analytic", "coefficient", "without_kinks"]
+__all__ = ["check_analytic", "coefficient", "coefficients", "without_kinks"]
+
+_LARGEST_POWER = 16
+"""Whole powers up to which products are multiplied out; of higher ones derivatives are taken."""
 
 _WITHOUT_END = (sp.Max, sp.Min, sp.Piecewise, sp.Heaviside)
 
@@ -141,13 +145,65 @@ def coefficient(f: Expr, epsilon: Symbol, k: int) -> Expr:
     >>> [coefficient(sp.elliptic_k(e), e, k) for k in range(3)]
     [pi/2, pi/8, 9*pi/128]
     """
-    expanded = _with_series(f, epsilon, k)
-    found = substitute(expanded.diff(epsilon, k), {epsilon: sp.S.Zero}) / sp.factorial(k)
-    if found.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
-        raise Undecided(
-            f"the coefficient of order {k} is not finite, so this is no expansion in whole powers"
-        )
+    return coefficients(f, epsilon, k)[k]
+
+
+def coefficients(f: Expr, epsilon: Symbol, order: int) -> list[Expr]:
+    """Return the coefficients of orders 0 to the given one of a function that is analytic at ε = 0.
+
+    Raises
+    ------
+    Undecided
+        Where one is not finite.
+
+    Examples
+    --------
+    >>> e, x = sp.symbols("e x", positive=True)
+    >>> coefficients(sp.sqrt(x + e) * (1 + e) ** 2, e, 1)
+    [sqrt(x), 2*sqrt(x) + 1/(2*sqrt(x))]
+    """
+    found = _taylor(_with_series(f, epsilon, order), epsilon, order)
+    for k, each in enumerate(found):
+        if each.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
+            raise Undecided(
+                f"the coefficient of order {k} is not finite, so this is no expansion in whole powers"
+            )
     return found
+
+
+def _taylor(f: Expr, epsilon: Symbol, order: int) -> list[Expr]:
+    """Return Taylor's coefficients: of sums, products and powers by those of their parts, of others by derivatives."""
+    if not f.has(epsilon):
+        return [f, *[sp.S.Zero] * order]
+    if isinstance(f, sp.Add):
+        parts = (_taylor(part, epsilon, order) for part in arguments(f))
+        return [sp.Add(*of_one_order) for of_one_order in zip(*parts, strict=True)]
+    if isinstance(f, sp.Mul):
+        return functools.reduce(_product, (_taylor(part, epsilon, order) for part in arguments(f)))
+    if isinstance(f, sp.Pow) and not f.exp.has(epsilon):
+        base = _taylor(f.base, epsilon, order)
+        if f.exp.is_Integer and 0 < int(f.exp) <= _LARGEST_POWER:
+            return functools.reduce(_product, [base] * int(f.exp))
+        if base[0] != 0 and (f.exp.is_negative or not f.exp.is_integer):
+            return _power(base, f.exp)
+    return [
+        substitute(f.diff(epsilon, k), {epsilon: sp.S.Zero}) / sp.factorial(k) if k else
+        substitute(f, {epsilon: sp.S.Zero})
+        for k in range(order + 1)
+    ]  # fmt: skip
+
+
+def _product(a: Sequence[Expr], b: Sequence[Expr]) -> list[Expr]:
+    """Return the coefficients of a product: Cauchy's, Σ aⱼ bₖ₋ⱼ."""
+    return [sp.Add(*(a[j] * b[k - j] for j in range(k + 1))) for k in range(len(a))]
+
+
+def _power(a: Sequence[Expr], r: Expr) -> list[Expr]:
+    """Return the coefficients of a power: k a₀ cₖ = Σ (j r − k + j) aⱼ cₖ₋ⱼ, as c a′ r = a c′ (L. Euler)."""
+    c = [a[0] ** r]
+    for k in range(1, len(a)):
+        c.append(sp.Add(*((j * r - k + j) * a[j] * c[k - j] for j in range(1, k + 1))) / (k * a[0]))
+    return c
 
 
 def _with_series(f: Expr, epsilon: Symbol, order: int) -> Expr:

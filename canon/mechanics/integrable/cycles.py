@@ -227,8 +227,10 @@ def _functions(square: Expr, q: Symbol, balls: Mapping[Symbol, acb]) -> tuple[Ba
 
 
 def _period(momentum: SeparatedMomentum) -> Expr | None:
-    """Return 2π where p² and the shift are proved to have that period in an angle."""
+    """Return 2π where p² and the shift are proved to have that period in an angle, or are constant."""
     q, parts = momentum.q, [f for f in (momentum.square, momentum.shift) if f is not None]
+    if not any(f.has(q) for f in parts):
+        return 2 * sp.pi
     if not any(f.has(sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc) for f in parts):
         return None
     turned = {q: q + 2 * sp.pi}

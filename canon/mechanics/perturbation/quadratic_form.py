@@ -108,6 +108,11 @@ def _root(mu: Expr) -> Expr:
         return -sp.I * sp.sqrtdenest(sp.sqrt(-mu))
     if mu.is_positive:
         return sp.sqrtdenest(sp.sqrt(mu))
+    if mu.free_symbols:
+        for square, unit in ((-mu, -sp.I), (mu, sp.S.One)):
+            root = _root_of_square(square)  # of either sign: which pair is which is told by κ, or is free
+            if root is not None:
+                return unit * root
     x, y = mu.as_real_imag()
     if not mu.free_symbols and y != 0:
         modulus = sp.sqrtdenest(sp.sqrt(sp.expand(x**2 + y**2)))
@@ -117,6 +122,23 @@ def _root(mu: Expr) -> Expr:
         f"the sign of {mu}, the square of an exponent, depends on the parameters; "
         "declare them so that it is known, or put numbers for them"
     )
+
+
+def _root_of_square(f: Expr) -> Expr | None:
+    """Return the root of the square of a rational function with real coefficients; None of what is none.
+
+    Examples
+    --------
+    >>> w = sp.Symbol("w", real=True)
+    >>> _root_of_square(4 * (w - 1) ** 2 / w**4), _root_of_square(-((w - 1) ** 2))
+    (2*(w - 1)/w**2, None)
+    """
+    factors = [factor.as_base_exp() for factor in sp.Mul.make_args(f)]
+    numbers = sp.Mul(*(base**n for base, n in factors if base.is_number))
+    powers = [(base, n) for base, n in factors if not base.is_number]
+    if not numbers.is_positive or any(not n.is_Integer or n.is_odd or not base.is_real for base, n in powers):
+        return None
+    return sp.sqrt(numbers) * sp.Mul(*(base ** (n / 2) for base, n in powers))
 
 
 def diagonal_form(

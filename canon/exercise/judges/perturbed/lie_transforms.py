@@ -19,7 +19,7 @@ from canon.exercise.judges.small_quantities import small_symbols
 from canon.exercise.question.continuous_answer import is_continuous
 from canon.exercise.question.deadline import PROOF_SECONDS
 from canon.exercise.question.question import Part, Question, Same, Tells, fails, wrong_variables
-from canon.exercise.question.series_expansion import check_analytic, coefficient, without_kinks
+from canon.exercise.question.series_expansion import check_analytic, coefficients, without_kinks
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.hamilton.bracket import poisson_bracket
@@ -315,7 +315,7 @@ def adiabatic_invariant(reading: Reading) -> Iterator[Question]:
     )
     yield from _one_function(reading, I, H, "I")
     if order == 0:
-        yield from (found for tau in slow for found in slow_invariant(reading, I_0, tau, H_0))
+        yield from (found for tau in slow for found in slow_invariant(reading, I_0, tau, H, H_0))
 
 
 def _rate_of_two_scales(reading: Reading, I: Expr, H: Expr, small: Symbol) -> Expr:
@@ -355,7 +355,7 @@ def _coefficients(reading: Reading, f: Expr, small: Symbol, order: int) -> list[
     place = {small: sp.S.Zero}
     f = without_kinks(f, place, reading.domain)
     check_analytic(f, place, reading.domain)
-    return [coefficient(f, small, k) for k in range(order + 1)]
+    return coefficients(f, small, order)
 
 
 def _sum(coefficients: Sequence[Expr], small: Symbol) -> Expr:

@@ -160,6 +160,8 @@ def recognised(
         return ratio * momentum.shift, "a constant momentum"
     if square is None:
         return _linear(momentum.shift, q)
+    if cycle.kind is CycleKind.ROTATION and not (square.has(q) or momentum.shift.has(q)):
+        return cast("Expr", cycle.period) / (2 * sp.pi) * momentum.value(cycle.sign), "free rotation"
     if momentum.shift != 0:
         return None
     terms = terms_in(in_reciprocals(about_its_kink(square, q)), q)

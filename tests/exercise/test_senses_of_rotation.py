@@ -1,0 +1,120 @@
+"""Actions of rotations, whose sense a domain may leave open; what is slow beside ignorable coordinates."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from canon.exercise.claim_verdict import judge
+from canon.exercise.sheet.sheet import Claim
+
+ROTOR = {"q": ["phi"], "p": ["p"], "H": "p^2/(2*I_0)"}
+RING = {"q": ["phi"], "p": ["p"], "H": "(p - a)^2/(2*I_0)"}
+PENDULUM = {"q": ["q"], "p": ["p"], "H": "p^2/2 - cos(q)", "domain": ["p**2/2 - cos(q) > 1"]}
+OVER = "2/pi*sqrt(2*(1 + E))*elliptic_e(2/(1 + E))"
+RATE = "pi*sqrt((1 + E)/2)/elliptic_k(2/(1 + E))"
+
+
+def told(kind: str, keys: dict[str, Any], p: str = "real", **more: Any) -> str:
+    names = {"I_0": "positive", "E": "real", "p": p} | ({"a": "real"} if "a" in keys["H"] else {})
+    return judge(Claim("a", kind, {"parameters": names, **keys, **more})).status.value
+
+
+@pytest.mark.parametrize("J", ["p", "Abs(p)", "sqrt(2*I_0*E)"])
+@pytest.mark.parametrize("p", ["positive", "negative", "nonzero"])
+def test_an_action_is_counted_along_the_motion_or_along_its_coordinate(J: str, p: str) -> None:
+    assert told("action-angle", ROTOR, p, J=J) == "holds"
+    for wrong in (f"2*pi*{J}", f"{J}/2", f"{J} + 1"):
+        assert told("action-angle", ROTOR, p, J=wrong) == "fails", wrong
+
+
+@pytest.mark.parametrize("p", ["positive", "nonzero"])
+def test_an_action_has_the_sign_of_a_momentum_that_is_positive(p: str) -> None:
+    for wrong in ("-p", "-Abs(p)", "-sqrt(2*I_0*E)"):
+        assert told("action-angle", ROTOR, p, J=wrong) == "fails", wrong
+
+
+def test_what_changes_its_sign_at_other_places_does_not_hold() -> None:
+    """Its square is right everywhere."""
+    assert told("action-angle", ROTOR, "negative", J="p*sign(p + 1)") == "fails"
+    assert told("action-angle", ROTOR, "negative", J="p*sign(phi)") == "fails"
+
+
+@pytest.mark.parametrize("domain", [["p > 0"], ["p < 0"], ["Ne(p, 0)"]])
+def test_the_pendulum_that_turns_over(domain: list[str]) -> None:
+    keys = {**PENDULUM, "domain": [*PENDULUM["domain"], *domain]}
+    assert told("action-angle", keys, J=OVER) == "holds"
+    assert told("frequency", keys, omega=RATE) == "holds"
+    for wrong in (f"2*{OVER}", OVER.replace("_e(2/(1 + E))", "_e((1 + E)/2)"), OVER.replace("_e", "_k")):
+        assert told("action-angle", keys, J=wrong) == "fails", wrong
+    assert told("frequency", keys, omega=f"{RATE}/2") == "fails"
+    backwards = "holds" if domain == ["p < 0"] else "fails"
+    assert told("action-angle", keys, J=f"-{OVER}") == told("frequency", keys, omega=f"-{RATE}") == backwards
+
+
+def test_the_frequency_of_a_rotor() -> None:
+    assert told("frequency", ROTOR, "nonzero", omega="p/I_0") == "holds"
+    assert told("frequency", ROTOR, "nonzero", omega="sqrt(2*E/I_0)") == "holds"
+    assert told("frequency", ROTOR, "nonzero", omega="p/(2*I_0)") == "fails"
+    assert told("frequency", ROTOR, "nonzero", omega="J/I_0", actions=["J"]) == "holds"
+    assert told("frequency", ROTOR, "nonzero", omega="2*J/I_0", actions=["J"]) == "fails"
+
+
+def test_a_ring_with_a_flux_through_it_has_its_momentum_for_its_action() -> None:
+    """The sense is that of p − a, and the action p whatever it is."""
+    assert told("action-angle", RING, domain=["p > a"], J="p") == "holds"
+    assert told("action-angle", RING, domain=["p > a"], J="p - a") == "fails"
+
+
+def test_what_moves_on_a_line_for_ever_has_no_action() -> None:
+    line = {"q": ["x"], "p": ["p"], "H": "p^2/(2*I_0)"}
+    verdict = judge(Claim("a", "action-angle", {"parameters": {"I_0": "positive"}, **line, "J": "p"}))
+    assert verdict.undecided
+    assert "call it one" in verdict.evidence[0].text
+
+
+def test_a_map_to_an_angle_and_its_action_in_both_senses() -> None:
+    keys = {**ROTOR, "new_q": ["w"], "new_p": ["J"], "domain": ["Ne(p, 0)"]}
+    assert told("action-angle", keys, transformation={"w": "phi", "J": "p"}) == "holds"
+    assert told("action-angle", keys, transformation={"w": "-phi", "J": "-p"}) == "holds"
+    assert told("action-angle", keys, transformation={"w": "phi/2", "J": "2*p"}) == "fails"
+
+
+LARMOR = {
+    "q": ["x", "y"], "p": ["px", "py"], "H": "(px^2 + (py - B(tau)*x)^2)/2", "small": ["eps"], "slow": ["tau"],
+    "functions": {"B": ["tau"]},
+}  # fmt: skip
+
+
+def of_larmor(I: str, **more: Any) -> str:
+    names = {"eps": "positive", "B": "positive"}
+    return judge(
+        Claim("a", "adiabatic-invariant", {"parameters": names, **LARMOR, "I": I, **more})
+    ).status.value
+
+
+def test_the_moment_of_a_charge_that_turns_in_a_slow_field() -> None:
+    energy = "(px^2 + (py - B(tau)*x)^2)"
+    for right in (f"{energy}/(2*B(tau))", f"{energy}/B(tau) + py^2", f"py*{energy}^2/B(tau)^2"):
+        assert of_larmor(right) == "holds", right
+    for wrong in (
+        f"{energy}/2", f"{energy}*B(tau)", f"{energy}/B(tau)^2", f"{energy}/B(tau) + y", f"{energy}/B(tau) + py*B(tau)",
+    ):  # fmt: skip
+        assert of_larmor(wrong) == "fails", wrong
+
+
+def test_a_momentum_that_h_changes_slowly_is_no_constant_beside_the_action() -> None:
+    H = "(px^2 + (py - B(tau)*x)^2)/2 + eps*y"
+    assert of_larmor("(px^2 + (py - B(tau)*x)^2)/(2*B(tau))", H=H) == "undecided"
+
+
+def test_a_rotating_frame_has_frequencies_whose_signs_are_not_known() -> None:
+    keys = {
+        "q": ["x", "y"], "p": ["a", "b"], "actions": ["I", "J"], "degree": 2, "parameters": {"w": "positive"},
+        "H": "(a^2 + b^2)/2 + (x^2 + y^2)/2 - w*(x*b - y*a)", "domain": ["w < 1/2"],
+    }  # fmt: skip
+    for right in ("(1 + w)*I + (1 - w)*J", "(1 - w)*I + (1 + w)*J"):
+        assert judge(Claim("a", "normal-form", {**keys, "K": right})).holds
+    for wrong in ("I + J", "(1 + w)*(I + J)", "(1 + w)*I - (1 - w)*J", "(1 + w)*I + (w - 1)*J"):
+        assert judge(Claim("a", "normal-form", {**keys, "K": wrong})).fails
