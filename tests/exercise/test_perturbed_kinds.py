@@ -7,7 +7,7 @@ import pytest
 from sympy import symbols
 
 from canon.exercise.claim_verdict import examine
-from canon.exercise.judges.perturbed import tori
+from canon.exercise.judges.perturbed import domain_tori
 from canon.exercise.question.deadline import Deadline, Worked
 from canon.exercise.sheet.reading import InvalidClaim
 from canon.exercise.sheet.sheet import Claim, read_sheet
@@ -274,10 +274,10 @@ def test_actions_that_the_time_is_too_short_for_are_no_ground_for_a_verdict(monk
     """A formula that is another one elsewhere may pass on fewer tori, so that none pass on those found until then."""
     q, p = symbols("q p", real=True)
     integral = hamilton_jacobi(Hamiltonian(p**2 / 2 + q**2, q, p))
-    assert len(list(islice(tori._bounded(integral, EVERYWHERE, Deadline.after(1e9)), 2))) == 2
+    assert len(list(islice(domain_tori._bounded(integral, EVERYWHERE, Deadline.after(1e9)), 2))) == 2
     worked = iter([Worked(0.0, 0.0), Worked(0.5, 2.0), Worked(2.0, 3.0)])
     monkeypatch.setattr(Worked, "now", classmethod(lambda _: next(worked)))
-    found = tori._bounded(integral, EVERYWHERE, Deadline.after(1.0))
+    found = domain_tori._bounded(integral, EVERYWHERE, Deadline.after(1.0))
     next(found)  # a second of work has not passed, although the clock went on
     with pytest.raises(Undecided, match="were not found in the budget"):
         next(found)

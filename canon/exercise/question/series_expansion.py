@@ -180,17 +180,25 @@ def _taylor(f: Expr, epsilon: Symbol, order: int) -> list[Expr]:
         return [sp.Add(*of_one_order) for of_one_order in zip(*parts, strict=True)]
     if isinstance(f, sp.Mul):
         return functools.reduce(_product, (_taylor(part, epsilon, order) for part in arguments(f)))
-    if isinstance(f, sp.Pow) and not f.exp.has(epsilon):
-        base = _taylor(f.base, epsilon, order)
-        if f.exp.is_Integer and 0 < int(f.exp) <= _LARGEST_POWER:
-            return functools.reduce(_product, [base] * int(f.exp))
-        if base[0] != 0 and (f.exp.is_negative or not f.exp.is_integer):
-            return _power(base, f.exp)
-    return [
-        substitute(f.diff(epsilon, k), {epsilon: sp.S.Zero}) / sp.factorial(k) if k else
-        substitute(f, {epsilon: sp.S.Zero})
-        for k in range(order + 1)
-    ]  # fmt: skip
+    found = _of_power(f, epsilon, order) if isinstance(f, sp.Pow) else None
+    return found or [_by_derivative(f, epsilon, k) for k in range(order + 1)]
+
+
+def _of_power(f: sp.Pow, epsilon: Symbol, order: int) -> list[Expr] | None:
+    """Return the coefficients of a constant power; None where derivatives are to be taken."""
+    if f.exp.has(epsilon):
+        return None
+    base = _taylor(f.base, epsilon, order)
+    if f.exp.is_Integer and 0 < int(f.exp) <= _LARGEST_POWER:
+        return functools.reduce(_product, [base] * int(f.exp))
+    if base[0] != 0 and (f.exp.is_negative or not f.exp.is_integer):
+        return _power(base, f.exp)
+    return None
+
+
+def _by_derivative(f: Expr, epsilon: Symbol, k: int) -> Expr:
+    slope = f.diff(epsilon, k) if k else f
+    return substitute(slope, {epsilon: sp.S.Zero}) / sp.factorial(k)
 
 
 def _product(a: Sequence[Expr], b: Sequence[Expr]) -> list[Expr]:

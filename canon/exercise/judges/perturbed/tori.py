@@ -113,14 +113,24 @@ def _map_to_actions(reading: Reading, H: Hamiltonian) -> Iterator[Question]:
     for there, tori in by_senses(H, reading):
         domain = transported(there, seen) if seen else there
         right = [substitute(tori.of_state(J), seen) for J in tori.known()]
-        A = _integer_matrix(right, momenta, (*q, *p), domain)
-        rows = (sp.Add(*(k * P for k, P in zip(A.row(i), momenta, strict=True))) for i in range(n))
-        parts = tuple(
-            Part(f"∂/∂{z} of the action of {x}", row.diff(z), J.diff(z))
-            for x, row, J in zip(H.q, rows, right, strict=True)
-            for z in (*q, *p)
-        )
-        yield Same(parts, domain, tori.shown, lambda _: said)
+        yield Same(_up_to_units(H.q, momenta, right, (*q, *p), domain), domain, tori.shown, lambda _: said)
+
+
+def _up_to_units(
+    names: Sequence[Symbol],
+    momenta: Sequence[Expr],
+    right: Sequence[Expr],
+    z: Sequence[Symbol],
+    domain: Domain,
+) -> tuple[Part, ...]:
+    """Return whether actions are A P + constants: all derivatives are the same."""
+    A = _integer_matrix(right, momenta, z, domain)
+    rows = (sp.Add(*(k * P for k, P in zip(A.row(i), momenta, strict=True))) for i in range(len(right)))
+    return tuple(
+        Part(f"∂/∂{s} of the action of {x}", row.diff(s), J.diff(s))
+        for x, row, J in zip(names, rows, right, strict=True)
+        for s in z
+    )
 
 
 def _integer_matrix(
