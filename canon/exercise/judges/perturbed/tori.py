@@ -18,20 +18,23 @@ from sympy import Expr, Symbol
 
 from canon.exercise.judges.canonical import canonical_parts
 from canon.exercise.judges.perturbed.domain_tori import BITS, DIGITS, by_senses, falls, may_be
+from canon.exercise.question.continuous_answer import is_continuous
 from canon.exercise.question.deadline import PROOF_SECONDS
-from canon.exercise.question.question import Part, Question, Same, Stated, wrong_variables
+from canon.exercise.question.question import Part, Question, Same, Stated, fails, wrong_variables
 from canon.expression.symbols.user_input import counted
 from canon.frozen_mapping import FrozenMapping
 from canon.mechanics.algebra.constraint_manifold import transported
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
+from canon.mechanics.integrable.cycles import ball_of
+from canon.proof.continuity.turns_of_angles import continuity_but_for_turns
 from canon.proof.domain.balls import precision
 from canon.proof.domain.domain import EVERYWHERE, Domain
-from canon.proof.domain.verdict import Counterexample, Status, Undecided, Verdict
+from canon.proof.domain.verdict import Counterexample, Evidence, Status, Undecided, Verdict, all_hold
 from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from flint import arb
 
@@ -39,6 +42,10 @@ if TYPE_CHECKING:
     from canon.exercise.sheet.reading import Reading
 
 __all__ = ["action_angle", "frequency", "slow_invariant"]
+
+POLES = (sp.tan, sp.cot, sp.sec, sp.csc)
+REAL_POINTS = 24
+"""Points at one of which a map should be real."""
 
 
 def action_angle(reading: Reading) -> Iterator[Question]:
@@ -109,11 +116,54 @@ def _map_to_actions(reading: Reading, H: Hamiltonian) -> Iterator[Question]:
         yield from wrong_variables(f, (reading.time,), name, "the other variables alone, as H is")
     whole = transported(reading.domain, seen) if seen else reading.domain
     yield Same(canonical_parts(images[:n], images[n:], q, p), whole)
+    yield from _is_one_map(
+        dict(zip(written, images, strict=True)), set() if seen else {*list(written)[:n]}, (*q, *p), whole
+    )
     said = "the new momenta are not the actions (1/2π) ∮ p dq: the angles do not grow by 2π in a turn"
     for there, tori in by_senses(H, reading):
         domain = transported(there, seen) if seen else there
         right = [substitute(tori.of_state(J), seen) for J in tori.known()]
         yield Same(_up_to_units(H.q, momenta, right, (*q, *p), domain), domain, tori.shown, lambda _: said)
+
+
+def _is_one_map(
+    images: Mapping[str, Expr], angles: set[str], state: Sequence[Symbol], domain: Domain
+) -> Iterator[Question]:
+    """Ask whether a map is real, and continuous but for the turns of angles: brackets show neither."""
+    if not _is_real_somewhere(images.values(), domain):
+        yield fails("the map is real", "the map is imaginary all over the domain")
+    for name, f in images.items():
+        if name in angles:
+            yield _winds(name, f, state, domain)
+        elif f.atoms(*POLES):
+            why = f"{name} may jump where {f} has poles; write it without tangents and secants"
+            yield Verdict(
+                Status.UNDECIDED, f"{name} is continuous", evidence=(Evidence("open", why),), feedback=why
+            )
+        else:
+            yield is_continuous(f, state, domain, name)
+
+
+def _winds(name: str, f: Expr, state: Sequence[Symbol], domain: Domain) -> Verdict:
+    """Tell whether an angle steps as arcs do at their cuts, or by whole turns only: sin θ and cos θ are continuous."""
+    steps = continuity_but_for_turns(f, state, domain, PROOF_SECONDS, name)
+    if steps.holds:
+        return steps
+    waves = [is_continuous(wave(f), state, domain, f"{wave}({name})") for wave in (sp.sin, sp.cos)]
+    if any(wave.fails for wave in waves):
+        return next(wave for wave in waves if wave.fails)
+    return all_hold(waves)
+
+
+def _is_real_somewhere(images: Iterable[Expr], domain: Domain) -> bool:
+    """Tell whether all images may be real at one of some points of the domain; so they are where none was found."""
+    images = [*images]
+    symbols = {s for f in images for s in f.free_symbols if isinstance(s, Symbol)}
+    points = [*domain.points(symbols, REAL_POINTS)]
+    with precision(BITS):
+        return not points or any(
+            all(ball_of(substitute(f, point)).imag.contains(0) for f in images) for point in points
+        )
 
 
 def _up_to_units(
