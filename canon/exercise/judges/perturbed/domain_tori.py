@@ -83,16 +83,19 @@ class Tori:
         self, claimed: Sequence[Expr], right: Sequence[Expr], balls: Sequence[arb], domain: Domain
     ) -> tuple[Expr, ...]:
         """Return what is right, with the other sign where an answer is counted along a coordinate that falls."""
-        (torus, *_), momenta = self.tori, self.integral.momenta
         with precision(BITS):
             turned = [
-                falls(torus, i, ball)
-                and may_be(self.number(f, torus), -ball)
-                and _is_even(momentum)
-                and proved_sign(momentum.p, domain) == "-"
-                for i, (f, ball, momentum) in enumerate(zip(claimed, balls, momenta, strict=True))
+                self._falls(i, domain) and may_be(self.number(f, self.tori[0]), -ball)
+                for i, (f, ball) in enumerate(zip(claimed, balls, strict=True))
             ]
         return tuple(-f if turns else f for f, turns in zip(right, turned, strict=True))
+
+    def _falls(self, i: int, domain: Domain) -> bool:
+        """Tell whether a coordinate turns backwards all over the domain."""
+        sense = _sense(self.integral.momenta[i])
+        if sense is None or not all(falls(torus, i) for torus in self.tori):
+            return False
+        return self.integral.momenta[i].square is None or proved_sign(self.of_state(sense), domain) == "-"
 
     def number(self, f: Expr, torus: ActionVariables) -> acb:
         """Return a ball that holds an answer, a function of (q, p), at the start of a torus."""
@@ -164,23 +167,30 @@ def by_senses(H: Hamiltonian, reading: Reading) -> list[tuple[Domain, Tori]]:
 
 @dataclass(frozen=True)
 class _BothSenses:
-    """A domain in which a coordinate turns in both senses: by the sign of its momentum."""
+    """A domain in which a coordinate turns in both senses: by the sign of its momentum, less a constant."""
 
-    momentum: Symbol
+    momentum: Expr
 
 
-def _both_senses(tori: Sequence[ActionVariables]) -> _BothSenses | None:
-    """Return the first momentum of a coordinate that turns forwards on some tori and backwards on others."""
+def _both_senses(tori: Sequence[ActionVariables], back: Mapping[Expr, Expr]) -> _BothSenses | None:
+    """Return what tells the senses of the first coordinate that turns forwards on some tori and backwards on others."""
     for i, momentum in enumerate(tori[0].integral.momenta):
-        turning = [torus.J[i] for torus in tori if torus.cycles[i].kind is not CycleKind.LIBRATION]
-        if any(J > 0 for J in turning) and any(J < 0 for J in turning) and _is_even(momentum):
-            return _BothSenses(momentum.p)
+        sense = _sense(momentum)
+        turning = [torus for torus in tori if torus.cycles[i].kind is not CycleKind.LIBRATION]
+        if sense is None or not turning:
+            continue
+        shown = exchanged(substitute(sense, dict(tori[0].integral.defined_as)), back)
+        signs = {bool(ball_of(substitute(sense, torus.values)).real > 0) for torus in turning}
+        if len(signs) > 1:
+            return _BothSenses(shown)
     return None
 
 
-def _is_even(momentum: SeparatedMomentum) -> bool:
-    """Tell whether the sense is that of the momentum: it is constant, or ±√p²."""
-    return momentum.shift == 0 if momentum.square is not None else not momentum.shift.has(momentum.q)
+def _sense(momentum: SeparatedMomentum) -> Expr | None:
+    """Return what has the sign of q̇ where p = s ± √p² with a constant s, p itself where it is constant; or None."""
+    if momentum.square is None:
+        return None if momentum.shift.has(momentum.q) else momentum.p
+    return None if momentum.shift.has(momentum.q) else momentum.p - momentum.shift
 
 
 @lru_cache(maxsize=KEPT)
@@ -224,7 +234,7 @@ def _kept_tori(
         raise Undecided(
             "the domain has motions of several kinds, librations and rotations; narrow it to those that are meant"
         )
-    both = _both_senses((*found, *compared))
+    both = _both_senses((*found, *compared), {symbol: f for f, symbol in frozen.items()})
     if both is not None:
         return both
     known = tuple(None if action is None else action.J for action in closed_actions(found[0], LONGEST))
@@ -286,9 +296,9 @@ def _lie_in(known: Sequence[Expr | None], torus: ActionVariables) -> bool:
         return all(lies_in(J, torus.values, ball) for J, ball in pairs if J is not None)
 
 
-def falls(torus: ActionVariables, i: int, ball: arb) -> bool:
-    """Tell whether a coordinate turns backwards: its action and its frequency are negative along it."""
-    return torus.cycles[i].kind is not CycleKind.LIBRATION and bool(ball < 0)
+def falls(torus: ActionVariables, i: int) -> bool:
+    """Tell whether a coordinate turns backwards: its frequency is negative along it."""
+    return torus.cycles[i].kind is not CycleKind.LIBRATION and bool(torus.frequencies[i] < 0)
 
 
 def may_be(number: acb, due: arb) -> bool:

@@ -280,7 +280,7 @@ def _refuted(
         for torus, right in zip(tori.tori, balls, strict=True):
             for i, (x, f, due) in enumerate(zip(torus.integral.H.q, claimed, right, strict=True)):
                 value = tori.number(f, torus)
-                if may_be(value, due) or (falls(torus, i, due) and may_be(value, -due)):
+                if may_be(value, due) or (falls(torus, i) and may_be(value, -due)):
                     continue
                 point = {s.name: str(v) for s, v in torus.values.items() if s not in torus.integral.constants}
                 example = Counterexample(point, value.str(8, radius=False), due.str(8, radius=False), DIGITS)

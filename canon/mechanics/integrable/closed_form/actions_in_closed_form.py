@@ -160,10 +160,21 @@ def recognised(
         return ratio * momentum.shift, "a constant momentum"
     if square is None:
         return _linear(momentum.shift, q)
-    if cycle.kind is CycleKind.ROTATION and not (square.has(q) or momentum.shift.has(q)):
-        return cast("Expr", cycle.period) / (2 * sp.pi) * momentum.value(cycle.sign), "free rotation"
-    if momentum.shift != 0:
+    if cycle.kind is CycleKind.LIBRATION:  # the shift is there and back the same
+        return _of_square(square, q, cycle, values)
+    ratio = cast("Expr", cycle.period) / (2 * sp.pi)
+    if momentum.shift.has(q):
         return None
+    if not square.has(q):
+        return ratio * momentum.value(cycle.sign), "free rotation"
+    found = _of_square(square, q, cycle, values)
+    return found and (ratio * momentum.shift + found[0], found[1])
+
+
+def _of_square(
+    square: Expr, q: Symbol, cycle: Cycle, values: Mapping[Symbol, Expr]
+) -> tuple[Expr, str] | None:
+    """Return the known integral of √(p²) over a cycle."""
     terms = terms_in(in_reciprocals(about_its_kink(square, q)), q)
     A = terms.pop(sp.S.One, sp.S.Zero)
     elliptic = action_in_elliptic_coordinates(A, terms, q, cycle, values)
