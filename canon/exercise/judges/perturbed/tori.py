@@ -237,6 +237,9 @@ def slow_invariant(reading: Reading, I: Expr, tau: Symbol, H: Expr, H0: Expr) ->
     """
     q, p = reading.phase_space("q", "p")
     moving = [(x, y) for x, y in zip(q, p, strict=True) if H.has(x)]
+    if not moving:
+        yield from wrong_variables(I, (*q, tau), "I", "the momenta, which are constant")
+        return
     if len(moving) != 1:
         raise Undecided(
             "to lowest order invariants of one degree of freedom beside ignorable coordinates are judged; for more, "

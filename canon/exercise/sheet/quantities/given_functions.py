@@ -52,6 +52,9 @@ def key_at(place: str) -> str:
     return re.split(r"[.\[]", place)[0]
 
 
+_INTEGRAL = re.compile(r"∫|∮|\\o?int(?![a-z])|\bIntegral\b|\bintegrate\b")
+
+
 @dataclass(frozen=True)
 class GivenFunctions:
     """The functions that a claim gives.
@@ -125,8 +128,8 @@ class GivenFunctions:
         -v**2/2
         """
         given = [name for name in _BY_LETTER if self._gives(name)]
-        if not given or len(text.strip()) > _LONGEST:
-            return None
+        if not given or len(text.strip()) > _LONGEST or _INTEGRAL.search(text):
+            return None  # under an integral a letter would be constant
         try:
             letters = {name: parse_expression(self.keys[name], self.scope) for name in given}
             if "H" in letters and not self.scope.declares("E") and "E" not in self.keys:
