@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from canon.exercise.claim_verdict import judge
+from canon.exercise.sheet.reading import InvalidClaim
 from canon.exercise.sheet.sheet import Claim
 
 ROTOR = {"q": ["phi"], "p": ["p"], "H": "p^2/(2*I_0)"}
@@ -118,3 +119,148 @@ def test_a_rotating_frame_has_frequencies_whose_signs_are_not_known() -> None:
         assert judge(Claim("a", "normal-form", {**keys, "K": right})).holds
     for wrong in ("I + J", "(1 + w)*(I + J)", "(1 + w)*I - (1 - w)*J", "(1 + w)*I + (w - 1)*J"):
         assert judge(Claim("a", "normal-form", {**keys, "K": wrong})).fails
+
+
+ANGLE = {
+    "q": ["q"], "p": ["p"], "H": "p**2/2 + w**2*q**2/2", "new_q": ["a"], "new_p": ["J"],
+    "parameters": {"w": "positive"},
+}  # fmt: skip
+J = "(p**2 + w**2*q**2)/(2*w)"
+TO_ANGLES = [
+    "atan2(w*q, p)",
+    "atan(w*q/p)",
+    "2*atan(w*q/(p + sqrt(p^2 + w^2*q^2)))",
+    "acos(p/sqrt(p^2 + w^2*q^2))*sign(q)",
+]
+
+
+def to_angle(table: dict[str, str], **more: Any) -> str:
+    return judge(Claim("a", "action-angle", {**ANGLE, "transformation": table, **more})).status.value
+
+
+@pytest.mark.parametrize("angle", TO_ANGLES)
+def test_angles_may_step_by_turns(angle: str) -> None:
+    assert to_angle({"a": angle, "J": J}) == "holds"
+
+
+@pytest.mark.parametrize(
+    "step",
+    ["sign(q)", "sign(p)", "sign(p)*sign(q)", "2*sign(p - q)", "atan(q) + atan(1/q)", "Max(0, sign(q))"],
+)
+def test_what_jumps_in_mid_motion_is_no_action_and_no_angle(step: str) -> None:
+    """Brackets do not show it."""
+    assert to_angle({"a": "atan2(w*q, p)", "J": f"{J} + {step}"}) == "fails"
+    assert to_angle({"a": f"atan2(w*q, p) + {step}", "J": J}) != "holds"
+
+
+@pytest.mark.parametrize(
+    ("q", "p"),
+    [
+        ("sqrt(2*J/w)*sin(a)*sign(cos(a))", "sqrt(2*w*J)*Abs(cos(a))"),
+        ("sqrt(2*J/w)*sin(a)*sign(cos(a))", "sqrt(2*w*J*(1 - sin(a)^2))"),
+        ("sqrt(2*J/w)*Abs(sin(a))", "sqrt(2*w*J)*cos(a)*sign(sin(a))"),
+        ("sqrt(2*J/w)*sin(atan(tan(a)))", "sqrt(2*w*J)*cos(atan(tan(a)))"),
+        ("sqrt(2*(J + sign(a))/w)*sin(a)", "sqrt(2*w*(J + sign(a)))*cos(a)"),
+        ("sqrt(2*J/w)*sin(a + sign(cos(a)))", "sqrt(2*w*J)*cos(a + sign(cos(a)))"),
+    ],
+)
+def test_a_map_that_is_folded_does_not_hold(q: str, p: str) -> None:
+    assert to_angle({"q": q, "p": p}) != "holds"
+
+
+def test_a_map_is_real() -> None:
+    right = {"q": "sqrt(2*J/w)*sin(a)", "p": "sqrt(2*w*J)*cos(a)"}
+    assert to_angle(right) == to_angle(right, parameters={"w": "positive", "J": "positive"}) == "holds"
+    assert to_angle(right, parameters={"w": "positive", "J": "negative"}) == "fails"
+    turned = {"q": "sqrt(-2*J/w)*sin(a)", "p": "-sqrt(-2*w*J)*cos(a)"}
+    assert to_angle(turned, parameters={"w": "positive", "J": "positive"}) == "fails"
+
+
+@pytest.mark.parametrize(
+    ("domain", "right", "wrong"),
+    [
+        (
+            ["p < a"],
+            ["p", "-p", "a - sqrt(2*I_0*E)", "sqrt(2*I_0*E) - a"],
+            ["a - p", "2*p", "sqrt(2*I_0*E) + a"],
+        ),
+        (["p > a"], ["p", "a + sqrt(2*I_0*E)"], ["-p", "p - a"]),
+        ([], ["p", "a + sign(p - a)*sqrt(2*I_0*E)"], ["-p", "p - a", "Abs(p)", "a + sign(p)*sqrt(2*I_0*E)"]),
+    ],
+)
+def test_along_the_motion_is_the_sense_of_the_velocity(
+    domain: list[str], right: list[str], wrong: list[str]
+) -> None:
+    assert [told("action-angle", RING, domain=domain, J=J) for J in right] == ["holds"] * len(right)
+    assert [told("action-angle", RING, domain=domain, J=J) for J in wrong] == ["fails"] * len(wrong)
+
+
+def test_frequencies_on_a_ring() -> None:
+    for omega, status in {
+        "(p - a)/I_0": "holds",
+        "sign(p - a)*sqrt(2*E/I_0)": "holds",
+        "p/I_0": "fails",
+    }.items():
+        assert told("frequency", RING, omega=omega) == status
+    assert told("frequency", RING, domain=["p < a"], omega="sqrt(2*E/I_0)") == "holds"
+    assert told("frequency", RING, actions=["J"], omega="(J - a)/I_0") == "holds"
+    assert told("frequency", RING, actions=["J"], omega="J/I_0") == "fails"
+
+
+def test_a_rotating_oscillator_whose_angle_falls() -> None:
+    keys = {
+        "q": ["r", "phi"], "p": ["p_r", "l"], "H": "p_r**2/2 + l**2/(2*r**2) + w**2*r**2/2 - W*l",
+        "parameters": {"w": "positive", "W": "positive", "r": "positive", "E": "real"}, "domain": ["l > 0", "W > w"],
+    }  # fmt: skip
+    radial = "(E + W*l)/(2*w) - l/2"
+    for answer, status in ((["l"], "holds"), (["-l"], "holds"), (["2*l"], "fails")):
+        assert told("action-angle", keys, J=[radial, *answer]) == status
+    assert told("action-angle", keys, J=["(E + W*l)/(2*w) + l/2", "l"]) == "fails"
+    assert (
+        told("frequency", keys, omega=["2*w", "W - w"])
+        == told("frequency", keys, omega=["2*w", "w - W"])
+        == "holds"
+    )
+
+
+def test_momenta_that_are_shifted() -> None:
+    moved = {"q": ["q"], "p": ["p"], "H": "(p - a)**2/2 - cos(q)"}
+    over, around = "2/pi*sqrt(2*(1 + E))*elliptic_e(2/(1 + E))", ["(p - a)**2/2 - cos(q) > 1", "p > a"]
+    assert told("action-angle", moved, domain=around, J=f"a + {over}") == "holds"
+    assert told("action-angle", moved, domain=around, J=over) == "fails"
+    slow = {
+        "q": ["q"],
+        "p": ["p"],
+        "small": ["eps"],
+        "slow": ["tau"],
+        "functions": {"w": ["tau"], "c": ["tau"]},
+    }
+    H = "(p**2 + w(tau)**2*q**2)/2 + c(tau)*q*p"
+    keys = {**slow, "H": H, "domain": ["c(tau) < w(tau)"]}
+    names = {"eps": "positive", "w": "positive", "c": "positive"}
+    for root, status in (("sqrt(w(tau)**2 - c(tau)**2)", "holds"), ("w(tau)", "fails")):
+        assert told("adiabatic-invariant", keys, parameters=names, I=f"({H})/{root}") == status
+
+
+def test_a_momentum_alone_is_a_constant_beside_what_is_slow() -> None:
+    keys = {
+        "q": ["phi"], "p": ["p"], "H": "p**2/2 - W(tau)*p", "small": ["eps"], "slow": ["tau"],
+        "functions": {"W": ["tau"]}, "parameters": {"eps": "positive", "W": "positive"},
+    }  # fmt: skip
+    assert [told("adiabatic-invariant", keys, I=I) for I in ("p", "p**3 + p")] == ["holds"] * 2
+    assert {told("adiabatic-invariant", keys, I=I) for I in ("p - W(tau)", "p + phi", "3")} == {"fails"}
+
+
+def test_nothing_given_is_constant_under_an_integral() -> None:
+    """The mean of H is not H: the chain failed, although both of its sides are right."""
+    keys = {
+        "q": ["theta"], "p": ["J"], "H": "w*J + eps*J^2*cos(theta)^4", "angles": ["theta"], "small": ["eps"],
+        "parameters": {"w": "positive", "eps": "real"},
+    }  # fmt: skip
+    with pytest.raises(InvalidClaim, match="H is not declared"):
+        told(
+            "averaged-hamiltonian",
+            keys,
+            K=r"\frac{1}{2\pi}\int_0^{2\pi} H\,d\theta = w J + \frac{3}{8} eps J^2",
+        )
+    assert told("averaged-hamiltonian", keys, K="w*J + 3/8*eps*J^2") == "holds"

@@ -246,3 +246,13 @@ def test_relativistic_motion_in_space_is_real():
     assert squared == 0
     assert not found.has(sp.I)
     assert found.subs({x.momentum: 0, y.momentum: 0}) == m * c**2
+
+
+def test_a_parameter_called_as_a_momentum_is_refused_where_the_hamiltonian_is_made():
+    """H would read p_x*x**2/2 + p_x**2/2, of two symbols."""
+    x, a = coordinates("x"), sp.Symbol("p_x", positive=True)
+    L = Lagrangian(x.dot**2 / 2 - a * x**2 / 2, [x])
+    with pytest.raises(ValueError, match="p_x is the name of a momentum and of another symbol in L"):
+        hamiltonian(L)
+    other = sp.Symbol("k_x", real=True)
+    assert other**2 / 2 + a * x**2 / 2 == hamiltonian(L, p=[other]).H

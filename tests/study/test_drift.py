@@ -244,3 +244,11 @@ def test_a_modulation_that_comes_back_twice_is_bounded():
     modulation = 1.0 + 1.5 * (1.0 - np.cos(4.0 * np.pi * series.SHARE))
     found = drift(TIMES, 1e-6 * modulation * np.sin(2.0 * np.pi * 331.7 * series.SHARE))
     assert found.verdict is Growth.BOUNDED
+
+
+def test_complex_series_are_refused():
+    """The imaginary part would be dropped, and what grows in it called bounded."""
+    t = np.linspace(0.0, 1000.0, 4001)
+    for times, error in ((t, 1j * t), (t * (1 + 0j), t)):
+        with pytest.raises(ValueError, match="real"):
+            drift(times, error)

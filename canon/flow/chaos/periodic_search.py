@@ -27,6 +27,9 @@ _TRIES = 40
 _ROUNDING = 2.0**-52
 _PERIODS = 2.0
 """The period found is not so many times longer or shorter than the guess."""
+_LEAST_ROW = 1e-2
+"""Least scale of an equation, in parts of the largest: what is smaller may be all rounding."""
+
 _SMALLEST_SINGULAR = 1e-9
 """Directions in which less changes than this part of the largest change are those of symmetries: none is followed."""
 
@@ -172,6 +175,7 @@ class PeriodicSearch:
             following = self._improved(guess, step, period)
             if following is None:
                 if guess.settled:
+                    self._check_moving(guess)
                     return self.orbit(guess)
                 break
             guess = following
@@ -180,6 +184,22 @@ class PeriodicSearch:
             f"{guess.period:.9g}; begin nearer to one, or at another period",
             guess.y, guess.period, guess.size,
         )  # fmt: skip
+
+    def _check_moving(self, guess: _Guess) -> None:
+        """Refuse an equilibrium, which closes after any time.
+
+        Raises
+        ------
+        NoPeriodicOrbitError
+            The state is at rest but for rounding.
+        """
+        way = abs(self.field(guess.y)).max() * guess.period
+        if self.equations.autonomous and way <= guess.rounding:
+            raise NoPeriodicOrbitError(
+                f"the search ends at an equilibrium, {guess.y}, which closes after any time and is no orbit; begin "
+                "farther from it, with an energy or a period that an orbit has",
+                guess.y, guess.period, guess.size,
+            )  # fmt: skip
 
     def _improved(self, guess: _Guess, step: Array, first: float) -> _Guess | None:
         """Return a better guess along a step of Newton's, or None where there is none near the first period."""
@@ -254,6 +274,8 @@ class PeriodicSearch:
         """Return the shortest solution in what varies."""
         free = self._free(rows.shape[1])
         scale = np.abs(rows[:, free]).max(axis=1)
+        # At a turning point the derivatives of a row vanish but for rounding, which is not to be blown up.
+        scale = np.maximum(scale, _LEAST_ROW * scale.max(initial=0.0))
         scale[scale == 0] = 1.0
         found = np.zeros(rows.shape[1])
         found[free] = np.linalg.lstsq(
@@ -287,7 +309,12 @@ class _Guess:
     @property
     def settled(self) -> bool:
         """Whether what does not close is no more than rounding leaves, times what the motion makes of it."""
-        return self.size <= 1e3 * _ROUNDING * max(1.0, abs(self.y).max()) * max(1.0, abs(self.M).max())
+        return self.size <= self.rounding
+
+    @property
+    def rounding(self) -> float:
+        """What rounding leaves, times what the motion makes of it."""
+        return 1e3 * _ROUNDING * max(1.0, float(abs(self.y).max())) * max(1.0, float(abs(self.M).max()))
 
 
 def _whole(half: Array, signs: Array) -> Array:

@@ -243,6 +243,10 @@ def _drift(
 
 
 def _checked(t: ArrayLike, error: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    if np.iscomplexobj(t) or np.iscomplexobj(error):
+        raise ValueError(
+            "times and errors should be real: give the real part, or the modulus, of a complex series"
+        )
     times = np.asarray(t, dtype=np.float64)
     values = np.asarray(error, dtype=np.float64)
     if times.ndim != 1 or times.shape != values.shape:
