@@ -128,7 +128,10 @@ def lyapunov_spectrum(
 
     Parameters
     ----------
-    system, t_span, y0, method, step, tolerance, precision, parameters, progress
+    system
+        A Hamiltonian, a map, a scene that has one, a Poisson system, or a vector field of an even number of variables;
+        a damped or driven ``Lagrangian`` is not taken, write its equations as a vector field.
+    t_span, y0, method, step, tolerance, precision, parameters, progress
         As :func:`canon.propagate` takes them. Many orbits, y0 of shape (2n, orbits) or parameters of shape (orbits,),
         run side by side; one that leaves the finite numbers gets the verdict ``LEFT`` and exponents NaN.
     vectors
