@@ -95,7 +95,10 @@ class Tori:
         sense = _sense(self.integral.momenta[i])
         if sense is None or not all(falls(torus, i) for torus in self.tori):
             return False
-        return self.integral.momenta[i].square is None or proved_sign(self.of_state(sense), domain) == "-"
+        H, p = self.integral.H.H, self.integral.momenta[i].p
+        if self.integral.momenta[i].square is None and substitute(H, {p: -p}) != H:
+            sense = self.frequencies()[i]
+        return proved_sign(self.of_state(sense), domain) == "-"
 
     def number(self, f: Expr, torus: ActionVariables) -> acb:
         """Return a ball that holds an answer, a function of (q, p), at the start of a torus."""
