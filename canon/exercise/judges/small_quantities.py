@@ -192,8 +192,8 @@ def _same_to_order(
     above, below = _quotient(f - g, small, epsilon, domain)
     start, lowest = _order_of(below, epsilon, domain, deadline)
     verdicts: list[Verdict] = []
-    for k in range(max(0, order + start + 1)):
-        found = coefficient(above, epsilon, k)
+    highest = order + start
+    for k, found in enumerate(coefficients(above, epsilon, highest) if highest >= 0 else ()):
         verdict = vanishes_off_kinks(found, domain, budget=deadline.left)
         if verdict.fails:
             left = shown_short(found / lowest * _power_of(small, k - start))

@@ -15,6 +15,8 @@ import sympy as sp
 from sympy import Expr
 
 from canon.mechanics.perturbation.lie_transform import Brackets
+from canon.proof.analytic import proved_sign
+from canon.proof.domain.domain import EVERYWHERE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -160,7 +162,7 @@ def diagonal_form(
     Raises
     ------
     NoDiagonalFormError
-        Where H₂ is not semisimple.
+        Where H₂ is not semisimple, or the sign of an action depends on parameters.
     """
     size = len(hessian)
     n = size // 2
@@ -300,9 +302,23 @@ def _less(row: Row, other: Row, factor: PhasePolynomial) -> Row:
 
 
 def _is_negative(minus_c_over_i: PhasePolynomial, ring: PolynomialRing) -> bool:
-    """Tell whether κ < 0, for i c = 2κ."""
+    """Tell whether κ < 0, for i c = 2κ.
+
+    Raises
+    ------
+    NoDiagonalFormError
+        Where that depends on parameters: an action would be negative for some of them.
+    """
     kappa = ring.expression(minus_c_over_i, [sp.S.Zero] * ring.size)
-    return bool(kappa.is_negative) if kappa.free_symbols else bool(kappa.evalf(50) < 0)
+    if not kappa.free_symbols:
+        return bool(kappa.evalf(50) < 0)
+    sign = {True: "-", False: "+"}.get(kappa.is_negative) or proved_sign(kappa, EVERYWHERE)
+    if not sign:
+        raise NoDiagonalFormError(
+            f"the sign of {kappa}, by which an action is told from its negative, depends on the parameters; "
+            "declare them so that it is known, or put numbers for them"
+        )
+    return sign == "-"
 
 
 def _linear(row: Row, ring: PolynomialRing) -> PhasePolynomial:

@@ -221,3 +221,17 @@ def test_the_remainder_falls_with_the_order_until_it_grows():
     assert not optimal_order(form, 0.01).reached
     for order in (3, 8):
         assert abs(remainder_norms(form, 0.02)[order] / near[order] / 2 ** (order + 1) - 1) < 1e-12
+
+
+def test_the_root_of_a_square_may_have_either_sign_but_an_action_may_not():
+    """In a rotating frame κ says which pair is which; a spring (w − 1)² has the action of |w − 1|."""
+    w = sp.Symbol("w", positive=True)
+    turning = two((x**2 + y**2) / 2 - w * (x * py - y * px))
+    I, J = birkhoff_normal_form(turning, 2).actions
+    found = birkhoff_normal_form(turning, 2).in_actions()
+    assert any(sp.expand(found - (1 + w) * a - (1 - w) * b) == 0 for a, b in ((I, J), (J, I)))
+    scaled = Hamiltonian((w - 1) * (p**2 + q**2) / 2, q, p)
+    assert sp.expand(birkhoff_normal_form(scaled, 2).in_actions() - (w - 1) * I) == 0
+    for H in (p**2 / 2 + (w - 1) ** 2 * q**2 / 2, (w - 1) * p**2 / 2 + q**2 / (2 * (w - 1))):
+        with pytest.raises(NoDiagonalFormError, match="told from its negative"):
+            birkhoff_normal_form(Hamiltonian(H, q, p), 2)

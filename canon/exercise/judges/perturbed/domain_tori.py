@@ -191,9 +191,9 @@ def _both_senses(tori: Sequence[ActionVariables], back: Mapping[Expr, Expr]) -> 
 
 def _sense(momentum: SeparatedMomentum) -> Expr | None:
     """Return what has the sign of q̇ where p = s ± √p² with a constant s, p itself where it is constant; or None."""
-    if momentum.square is None:
-        return None if momentum.shift.has(momentum.q) else momentum.p
-    return None if momentum.shift.has(momentum.q) else momentum.p - momentum.shift
+    if momentum.shift.has(momentum.q):
+        return None
+    return momentum.p if momentum.square is None else momentum.p - momentum.shift
 
 
 @lru_cache(maxsize=KEPT)

@@ -44,6 +44,7 @@ if TYPE_CHECKING:
 __all__ = ["action_angle", "frequency", "slow_invariant"]
 
 POLES = (sp.tan, sp.cot, sp.sec, sp.csc)
+"""Functions of an angle across whose poles a map may jump."""
 REAL_POINTS = 24
 """Points at one of which a map should be real."""
 
@@ -116,9 +117,8 @@ def _map_to_actions(reading: Reading, H: Hamiltonian) -> Iterator[Question]:
         yield from wrong_variables(f, (reading.time,), name, "the other variables alone, as H is")
     whole = transported(reading.domain, seen) if seen else reading.domain
     yield Same(canonical_parts(images[:n], images[n:], q, p), whole)
-    yield from _is_one_map(
-        dict(zip(written, images, strict=True)), set() if seen else {*list(written)[:n]}, (*q, *p), whole
-    )
+    angles = set[str]() if seen else {s.name for s in new_q}
+    yield from _is_one_map(dict(zip(written, images, strict=True)), angles, (*q, *p), whole)
     said = "the new momenta are not the actions (1/2π) ∮ p dq: the angles do not grow by 2π in a turn"
     for there, tori in by_senses(H, reading):
         domain = transported(there, seen) if seen else there

@@ -41,6 +41,10 @@ _TERM = re.compile(
 _SLOPE = re.compile(r"∂\s?(?P<of>[A-Z][12]?)\s?/\s?∂(?P<by>[^-−+=∂*/(){}\[\]\s]{1,20})")
 
 
+_INTEGRAL = re.compile(r"∫|∮|\\o?int(?![a-z])|\bIntegral\b|\bintegrate\b")
+"""Signs of integrals: a letter that is put in for a function would be constant under them."""
+
+
 def key_at(place: str) -> str:
     """Return the key of a place in a claim.
 
@@ -50,9 +54,6 @@ def key_at(place: str) -> str:
     ('p_dot', 'map')
     """
     return re.split(r"[.\[]", place)[0]
-
-
-_INTEGRAL = re.compile(r"∫|∮|\\o?int(?![a-z])|\bIntegral\b|\bintegrate\b")
 
 
 @dataclass(frozen=True)
@@ -129,7 +130,7 @@ class GivenFunctions:
         """
         given = [name for name in _BY_LETTER if self._gives(name)]
         if not given or len(text.strip()) > _LONGEST or _INTEGRAL.search(text):
-            return None  # under an integral a letter would be constant
+            return None
         try:
             letters = {name: parse_expression(self.keys[name], self.scope) for name in given}
             if "H" in letters and not self.scope.declares("E") and "E" not in self.keys:
