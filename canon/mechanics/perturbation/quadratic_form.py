@@ -312,7 +312,9 @@ def _is_negative(minus_c_over_i: PhasePolynomial, ring: PolynomialRing) -> bool:
     kappa = ring.expression(minus_c_over_i, [sp.S.Zero] * ring.size)
     if not kappa.free_symbols:
         return bool(kappa.evalf(50) < 0)
-    sign = {True: "-", False: "+"}.get(kappa.is_negative) or proved_sign(kappa, EVERYWHERE)
+    if kappa.is_negative is not None:
+        return bool(kappa.is_negative)
+    sign = proved_sign(kappa, EVERYWHERE)
     if not sign:
         raise NoDiagonalFormError(
             f"the sign of {kappa}, by which an action is told from its negative, depends on the parameters; "
