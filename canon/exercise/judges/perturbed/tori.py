@@ -117,8 +117,7 @@ def _map_to_actions(reading: Reading, H: Hamiltonian) -> Iterator[Question]:
         yield from wrong_variables(f, (reading.time,), name, "the other variables alone, as H is")
     whole = transported(reading.domain, seen) if seen else reading.domain
     yield Same(canonical_parts(images[:n], images[n:], q, p), whole)
-    angles = set[str]() if seen else {s.name for s in new_q}
-    yield from _is_one_map(dict(zip(written, images, strict=True)), angles, (*q, *p), whole)
+    yield from _is_one_map(dict(zip(written, images, strict=True)), new_q, (*q, *p), whole)
     said = "the new momenta are not the actions (1/2π) ∮ p dq: the angles do not grow by 2π in a turn"
     for there, tori in by_senses(H, reading):
         domain = transported(there, seen) if seen else there
@@ -127,13 +126,13 @@ def _map_to_actions(reading: Reading, H: Hamiltonian) -> Iterator[Question]:
 
 
 def _is_one_map(
-    images: Mapping[str, Expr], angles: set[str], state: Sequence[Symbol], domain: Domain
+    images: Mapping[str, Expr], angles: Sequence[Symbol], state: Sequence[Symbol], domain: Domain
 ) -> Iterator[Question]:
     """Ask whether a map is real, and continuous but for the turns of angles: brackets show neither."""
     if not _is_real_somewhere(images.values(), domain):
         yield fails("the map is real", "the map is imaginary all over the domain")
     for name, f in images.items():
-        if name in angles:
+        if name in {s.name for s in angles}:
             yield _winds(name, f, state, domain)
         elif f.atoms(*POLES):
             why = f"{name} may jump where {f} has poles; write it without tangents and secants"
