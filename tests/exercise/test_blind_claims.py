@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from canon.exercise.explained_judgement import judgements
 from canon.exercise.sheet.sheet import read_sheet
-from canon.exercise.sheet_check import judged
 
 SHEETS = sorted((Path(__file__).parents[1] / "data").glob("blind_claims/*/*.*"))
 UNDECIDED = {"H3-EQ-70", "X-EQ-20", "X-EQ-45", "X-EQ-47", "X-EQ-51"}
@@ -15,7 +15,8 @@ UNDECIDED = {"H3-EQ-70", "X-EQ-20", "X-EQ-45", "X-EQ-47", "X-EQ-51"}
 @pytest.mark.slow
 @pytest.mark.parametrize("sheet", SHEETS, ids=lambda path: f"{path.parent.name}-{path.stem}")
 def test_verdicts(sheet):
+    """The first judgement on a claim is its verdict; what a wrong answer is told is asked in test_slips.py."""
     claims = read_sheet(sheet).claims
-    verdicts = {judgement.id: judgement.status for judgement in judged(claims)}
+    verdicts = {claim.id: next(judgements(claim))[0].status for claim in claims}
     expected = {claim.id: "undecided" if claim.id in UNDECIDED else claim.expect for claim in claims}
     assert verdicts == expected

@@ -34,7 +34,7 @@ from canon.frozen_mapping import FrozenMapping
 from canon.mechanics.algebra.possible_motion import where_real
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.hamilton.pfaffian_form import displacements, divided_by_dt
-from canon.proof.domain.domain import Domain
+from canon.proof.domain.domain import Domain, has_point
 from canon.proof.rungs.ladder import is_empty
 
 if TYPE_CHECKING:
@@ -216,11 +216,7 @@ class Reading:
                 self.fault("box", f"{name} is not declared; {self.scope.near(name)}")
             box[symbol] = (exact(low), exact(high))
         domain = Domain(tuple(conditions), FrozenMapping(box))
-        if (
-            conditions
-            and next(domain.points((), 1), None) is None
-            and is_empty(domain, time.monotonic() + 0.5)
-        ):
+        if conditions and not has_point(domain) and is_empty(domain, time.monotonic() + 0.5):
             self.fault("domain", "no point satisfies these conditions and assumptions together")
         return domain
 

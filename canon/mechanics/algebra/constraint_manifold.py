@@ -22,7 +22,7 @@ from canon.mechanics.algebra.substitution import substitute, symbols_of
 from canon.proof.analytic import proved_sign
 from canon.proof.definedness.definedness import lack_of_value
 from canon.proof.definedness.formula_around import put_in
-from canon.proof.domain.domain import Domain
+from canon.proof.domain.domain import Domain, has_point
 from canon.proof.domain.verdict import Undecided
 from canon.proof.kinks import vanishes_off_kinks
 from canon.proof.rungs.ladder import is_empty
@@ -246,7 +246,7 @@ def transported(domain: Domain, values: Mapping[Symbol, Expr]) -> Domain:
 
 def _without_point(domain: Domain) -> bool:
     """Whether it is proved that a domain holds no point."""
-    return next(domain.points((), 1), None) is None and is_empty(domain, time.monotonic() + 0.5)
+    return not has_point(domain) and is_empty(domain, time.monotonic() + 0.5)
 
 
 def _signs(symbol: Symbol, value: Expr) -> Iterator[Boolean]:

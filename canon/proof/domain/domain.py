@@ -6,6 +6,7 @@ What a single symbol may be (positive, real, integer …) is said by the symbol'
 
 from __future__ import annotations
 
+import functools
 import random
 import time
 from collections.abc import Iterable, Sequence
@@ -36,6 +37,7 @@ __all__ = [
     "Domain",
     "as_domain",
     "conditions_hold",
+    "has_point",
 ]
 
 
@@ -250,6 +252,27 @@ class Domain:
 
 EVERYWHERE = Domain()
 """No condition beside the symbols' own assumptions."""
+
+
+def has_point(domain: Domain) -> bool:
+    """Tell whether a point of a domain is found; that of the last domains is kept, as each repair of an answer asks.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> x = symbols("x", real=True)
+    >>> has_point(Domain((x > 1,))), has_point(Domain((x > 1, x < 0)))
+    (True, False)
+    """
+    return _has_point(domain.conditions, tuple(domain.box.items()))
+
+
+@functools.lru_cache(maxsize=256)
+def _has_point(
+    conditions: tuple[Boolean, ...], box: tuple[tuple[Symbol, tuple[Rational, Rational]], ...]
+) -> bool:
+    domain = Domain(conditions, FrozenMapping(dict(box)))
+    return next(domain.points((), 1), None) is not None
 
 
 def as_domain(given: Any, otherwise: Domain = EVERYWHERE) -> Domain:
