@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from canon.exercise.question.equation_systems import AFFINE
-from canon.exercise.sheet.kind import COMMON
+from canon.exercise.sheet.kind import BESIDE, COMMON
 from canon.exercise.sheet.reading import InvalidClaim
 from canon.expression.text.vocabulary import FUNCTIONS
 
@@ -27,7 +27,6 @@ __all__ = ["Explanation", "KeptExplanations", "meaning"]
 MOST_KEPT = 512
 LONGEST = 4_000
 """Characters of a claim whose explanation is kept, so that a process that lives for weeks stays small."""
-_SAYS_NOTHING = frozenset(("id", "title", "source", "expect", "budget", "points"))
 
 
 @dataclass(frozen=True)
@@ -91,7 +90,7 @@ def meaning(finding: Finding) -> Hashable:
     said = tuple(
         (key, _read(value, reading) if key in reading.kind.answer and key not in COMMON else repr(value))
         for key, value in reading.claim.keys.items()
-        if key not in _SAYS_NOTHING
+        if key not in BESIDE
     )
     affine = verdict.question == AFFINE
     how = (finding.held, type(finding.question).__name__, affine, verdict.feedback, len(finding.asked))

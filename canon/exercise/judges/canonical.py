@@ -98,7 +98,9 @@ def canonicity(reading: Reading) -> Iterator[Question]:
     if reading.has("valence"):
         if valence.has(*q, *p):
             reading.fault("valence", "a valence is the same at all points: it can't depend on q and p")
-        yield Regular(sp.Matrix([[valence]]), "the valence", reading.domain, "the valence is zero")
+        yield Regular(
+            sp.Matrix([[valence]]), "the valence", reading.domain, "the valence is zero", exceptions=True
+        )
     if reading.has("implicit"):
         yield from _implicit_canonicity(reading, q, p, valence)
     else:

@@ -10,6 +10,7 @@ from sympy import Expr, Symbol
 
 from canon.exercise.judges.energy_and_force import shown_short
 from canon.exercise.question.continuous_answer import constants_are_continuous
+from canon.exercise.question.jumping_system import check_kept_at_jumps
 from canon.exercise.question.question import Differ, Part, Question, Same, Tells
 from canon.expression.symbols.symbol import acceleration, velocity
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
@@ -17,12 +18,19 @@ from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.domain.verdict import Undecided
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from canon.exercise.sheet.reading import Reading
     from canon.proof.domain.domain import Domain
 
-__all__ = ["NOT_OF_THE_STATE", "conserved_or_not", "motion_of", "same_everywhere", "system_of"]
+__all__ = [
+    "NOT_OF_THE_STATE",
+    "conserved_or_not",
+    "mechanical_system",
+    "motion_of",
+    "same_everywhere",
+    "system_of",
+]
 
 NOT_OF_THE_STATE = "what does not depend on the state is true of any system"
 
@@ -30,6 +38,11 @@ NOT_OF_THE_STATE = "what does not depend on the state is true of any system"
 def conserved_or_not(reading: Reading) -> Iterator[Question]:
     """dI/dt = Σ ∂I/∂x ẋ + ∂I/∂t vanishes for the one list and does not vanish identically for the other."""
     rates, t = motion_of(reading), reading.time
+
+    def rate_of(f: Expr) -> tuple[Expr]:
+        return (sp.Add(*(f.diff(x) * value for x, value in rates.items()), f.diff(t)),)
+
+    state = (*rates, t)
     for key in ("conserved", "not_conserved"):
         if not reading.has(key):
             continue
@@ -37,12 +50,13 @@ def conserved_or_not(reading: Reading) -> Iterator[Question]:
         for i, I in enumerate(quantities):
             if I.has(*(s for s in _accelerations(reading) if s not in rates)):
                 reading.fault(f"{key}[{i}]", "should depend on the state and the time only")
-            rate = sp.Add(*(I.diff(x) * value for x, value in rates.items()), I.diff(t))
+            (rate,) = rate_of(I)
+            check_kept_at_jumps(I, mechanical_system(reading), reading.domain)
             if key == "conserved":
                 yield Same((Part(f"d/dt ({I})", rate),), reading.domain, said=_not_conserved)
-                yield from constants_are_continuous(I, (*rates, t), reading.domain, system_of(reading))
+                yield from constants_are_continuous(I, state, reading.domain, rate_of, system_of(reading))
             else:
-                _check_continuous(I, (*rates, t), reading.domain)
+                _check_continuous(I, state, reading.domain, rate_of)
                 why = f"{I} is conserved: its rate vanishes on every motion"
                 yield Differ(Part(f"d/dt ({I})", rate), reading.domain, why)
         yield Tells((same_everywhere(quantities, tuple(rates), reading.domain),), NOT_OF_THE_STATE)
@@ -60,7 +74,9 @@ def same_everywhere(
     return Same(parts or (Part("0", sp.S.Zero),), domain)
 
 
-def _check_continuous(I: Expr, state: Sequence[Symbol], domain: Domain) -> None:
+def _check_continuous(
+    I: Expr, state: Sequence[Symbol], domain: Domain, rates: Callable[[Expr], Sequence[Expr]]
+) -> None:
     """Refuse quantities such as |x|/x, whose rate vanishes where it exists and which jump all the same.
 
     Raises
@@ -68,7 +84,7 @@ def _check_continuous(I: Expr, state: Sequence[Symbol], domain: Domain) -> None:
     Undecided
         Where the quantity may jump.
     """
-    if not all(verdict.holds for verdict in constants_are_continuous(I, state, domain)):
+    if not all(verdict.holds for verdict in constants_are_continuous(I, state, domain, rates)):
         raise Undecided(f"{I} may jump, which its rate does not show; narrow the domain to where it does not")
 
 
@@ -80,18 +96,26 @@ def system_of(reading: Reading) -> tuple[Expr, ...]:
     return reading.expressions("X") if reading.has("X") else ()
 
 
-def motion_of(reading: Reading) -> dict[Symbol, Expr]:
-    """Return the rate of each state variable of a system given by H, L or X."""
+def mechanical_system(reading: Reading) -> Hamiltonian | Lagrangian | None:
+    """Return the system that H or L gives with its forces; None where a vector field or equations are given."""
     if reading.has("H"):
         q, p = reading.phase_space("q", "p")
-        system = Hamiltonian(reading.expression("H"), q, p, reading.time)
-        return dict(zip((*q, *p), system.vector_field, strict=True))
+        return Hamiltonian(reading.expression("H"), q, p, reading.time)
     if reading.has("L"):
         q = reading.symbols("q")
         forces = reading.expressions("Qnc", like="q") if reading.has("Qnc") else None
-        lagrangian = Lagrangian(reading.expression("L"), q, forces, reading.time)
-        rates: dict[Symbol, Expr] = {x: velocity(x) for x in q}
-        return rates | dict(zip(lagrangian.velocities, lagrangian.accelerations, strict=True))
+        return Lagrangian(reading.expression("L"), q, forces, reading.time)
+    return None
+
+
+def motion_of(reading: Reading) -> dict[Symbol, Expr]:
+    """Return the rate of each state variable of a system given by H, L or X."""
+    system = mechanical_system(reading)
+    if isinstance(system, Hamiltonian):
+        return dict(zip((*system.q, *system.p), system.vector_field, strict=True))
+    if isinstance(system, Lagrangian):
+        rates: dict[Symbol, Expr] = {x: velocity(x) for x in system.q}
+        return rates | dict(zip(system.velocities, system.accelerations, strict=True))
     if not reading.has("X"):
         reading.fault("L", "missing; give q with L, q and p with H, or x with X")
     return dict(zip(reading.symbols("x"), reading.expressions("X", like="x"), strict=True))

@@ -7,10 +7,16 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.judges.conserved import NOT_OF_THE_STATE, same_everywhere, system_of
+from canon.exercise.judges.conserved import (
+    NOT_OF_THE_STATE,
+    mechanical_system,
+    same_everywhere,
+    system_of,
+)
 from canon.exercise.judges.lagrangian import lagrangian_of
 from canon.exercise.question.answer import stay_open
 from canon.exercise.question.continuous_answer import constants_are_continuous
+from canon.exercise.question.jumping_system import check_kept_at_jumps, check_motion_at_jumps
 from canon.exercise.question.question import Determines, Part, Question, Regular, Same, Tells, wrong_variables
 from canon.expression.symbols.symbol import Rate, acceleration, velocity
 from canon.mechanics.algebra.constraint_manifold import on_manifold, transported
@@ -33,7 +39,7 @@ def legendre_hamiltonian(reading: Reading) -> Iterator[Question]:
     _, p = reading.phase_space("q", "p")
     lagrangian = lagrangian_of(reading)
     domain = where_root_is_real(lagrangian.L, lagrangian.velocities, reading.domain)
-    yield Regular(lagrangian.mass_matrix, "the velocity Hessian", domain)
+    yield Regular(lagrangian.mass_matrix, "the velocity Hessian", domain, exceptions=True)
     if reading.has("H"):
         yield from wrong_variables(reading.expression("H"), lagrangian.velocities, "H", "q, p and t")
         through = dict(zip(p, lagrangian.momenta, strict=True))
@@ -72,6 +78,7 @@ def _solution(reading: Reading, system: Hamiltonian) -> Iterator[Question]:
             reading.fault(f"solution.{z}", f"should depend on {system.t} and parameters only")
     yield from motion_is_real(motion, reading.domain)
     domain = transported(reading.domain, motion)
+    check_motion_at_jumps(motion, system, domain, reading.domain)
     rates = zip((*system.q, *system.p), system.vector_field, strict=True)
     parts = (
         Part(f"the equation of {z}", motion[z].diff(system.t), substitute(rate, motion)) for z, rate in rates
@@ -84,13 +91,17 @@ def constant_of_motion(reading: Reading) -> Iterator[Question]:
     """dI/dt = Σ ∂I/∂x ẋ + ∂I/∂t vanishes, where the restrictions do."""
     I, t = reading.expression("I"), reading.time
     rates = _rates(reading, I)
-    rate = sp.Add(*(I.diff(x) * value for x, value in rates.items()), I.diff(t))
+
+    def rate_of(f: Expr) -> tuple[Expr]:
+        return (sp.Add(*(f.diff(x) * value for x, value in rates.items()), f.diff(t)),)
+
     restrictions = reading.equations("restrict") if reading.has("restrict") else ()
     branches = on_manifold(restrictions, reading.domain)
     for branch in branches:
         there = substitute(I, branch.values)
-        yield Same((Part("dI/dt", rate, through=branch.values),), branch.domain)
-        yield from constants_are_continuous(there, (*rates, t), branch.domain, system_of(reading))
+        check_kept_at_jumps(there, mechanical_system(reading), branch.domain)
+        yield Same((Part("dI/dt", *rate_of(I), through=branch.values),), branch.domain)
+        yield from constants_are_continuous(there, (*rates, t), branch.domain, rate_of, system_of(reading))
     trivial = tuple(same_everywhere((I,), tuple(rates), b.domain, b.values) for b in branches)
     yield Tells(trivial, "it follows from `restrict` alone" if restrictions else NOT_OF_THE_STATE)
 

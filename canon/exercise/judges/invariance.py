@@ -85,7 +85,9 @@ def _hamiltonian_form(
 ) -> Iterator[Question]:
     """M J Mᵀ = c J with the same c ≠ 0 at all points and times."""
     valence = poisson_bracket(Q[0], P[0], q, p)
-    yield Regular(sp.Matrix([[valence]]), "{Q, P}", domain, "{Q, P} = 0: the map is singular")
+    yield Regular(
+        sp.Matrix([[valence]]), "{Q, P}", domain, "{Q, P} = 0: the map is singular", exceptions=True
+    )
     moving = (*q, *p, reading.time)
     yield Same(tuple(_constancy(valence, moving, domain)), domain, _no_answer, is_instead)
     yield is_continuous(valence, moving, domain, "{Q, P}")
@@ -178,7 +180,8 @@ def _point_transformation(reading: Reading) -> Question:
         raise Undecided(
             "∂Q/∂q has pieces, and may be singular on one of them; narrow the domain to one piece"
         )
-    return Regular(jacobian, "∂Q/∂q", reading.domain, "∂Q/∂q is singular: Q are no coordinates")
+    singular = "∂Q/∂q is singular: Q are no coordinates"
+    return Regular(jacobian, "∂Q/∂q", reading.domain, singular, exceptions=True)
 
 
 def jacobi_identity(reading: Reading) -> Iterator[Question]:
@@ -190,6 +193,9 @@ def jacobi_identity(reading: Reading) -> Iterator[Question]:
     def turned(i: int, j: int, k: int) -> Expr:
         return sp.Add(*(J(i, m) * J(j, k).diff(x[m]) for m in range(n)))
 
+    def brackets(C: Expr) -> list[Expr]:
+        return [sp.Add(*(J(k, m) * C.diff(x[m]) for m in range(n))) for k in range(n)]
+
     parts = [
         Part(f"{{{x[i]}, {{{x[j]}, {x[k]}}}}} + cyclic", turned(i, j, k) + turned(j, k, i) + turned(k, i, j))
         for i, j, k in combinations(range(n), 3)
@@ -200,12 +206,9 @@ def jacobi_identity(reading: Reading) -> Iterator[Question]:
         yield Stated(Verdict(Status.HOLDS, "Jacobi's identity of two variables", "structure"))
     casimirs = reading.expressions("casimirs") if reading.has("casimirs") else ()
     for i, C in enumerate(casimirs):
-        kept = [
-            Part(f"{{{x[k]}, casimirs[{i}]}}", sp.Add(*(J(k, m) * C.diff(x[m]) for m in range(n))))
-            for k in range(n)
-        ]
+        kept = [Part(f"{{{s}, casimirs[{i}]}}", bracket) for s, bracket in zip(x, brackets(C), strict=True)]
         yield Same(tuple(kept), reading.domain, _no_answer, is_instead)
-        yield from constants_are_continuous(C, x, reading.domain)
+        yield from constants_are_continuous(C, x, reading.domain, brackets)
     if casimirs:
         yield Tells(
             (same_everywhere(casimirs, x, reading.domain),), "a number has vanishing brackets in any system"

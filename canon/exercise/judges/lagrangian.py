@@ -16,6 +16,7 @@ from sympy import Expr, Symbol
 from canon.exercise.question.answer import stay_open
 from canon.exercise.question.continuous_answer import is_continuous
 from canon.exercise.question.given_bodies import given_bodies
+from canon.exercise.question.jumping_system import check_absent, check_gauge_term
 from canon.exercise.question.question import (
     Determines,
     Part,
@@ -95,6 +96,7 @@ def routhian(reading: Reading) -> Iterator[Question]:
     L, velocities = lagrangian.L, tuple(velocity(c) for c in ignorable)
     absent = tuple(Part(f"∂L/∂{c} of the ignorable coordinate {c}", L.diff(c)) for c in ignorable)
     yield Same(absent, reading.domain, said=_not_ignorable)
+    check_absent(ignorable, lagrangian, reading.domain)
     yield Regular(
         sp.Matrix([[L.diff(a, b) for b in velocities] for a in velocities]),
         "the Hessian in the ignorable velocities",
@@ -143,6 +145,7 @@ def lagrangian_equivalence(reading: Reading) -> Iterator[Question]:
             reading.fault("F", "stands beside the relation gauge only; leave it out, or write gauge")
         systems = [Lagrangian(L, q, t=t).equations for L in (second, first)]
         yield SameEquations(systems[0], systems[1], tuple(acceleration(x) for x in q), reading.domain)
+        check_gauge_term(_in_motion(second - first, q), q, t, reading.domain)
         yield from _no_steps(first, second, q, reading)
     elif relation != "gauge":
         reading.fault("relation", "write gauge or equations")
@@ -154,18 +157,27 @@ def lagrangian_equivalence(reading: Reading) -> Iterator[Question]:
         yield is_continuous(F, (*q, t), reading.domain, "F")
     else:
         yield Same(tuple(_total_derivative_conditions(second - first, q, t)), reading.domain)
+        check_gauge_term(_in_motion(second - first, q), q, t, reading.domain)
         yield from _no_steps(first, second, q, reading)
         yield Determines(lambda: stay_open(["F"]))
 
 
 def _no_steps(first: Expr, second: Expr, q: Sequence[Symbol], reading: Reading) -> Iterator[Question]:
     """Yield whether either Lagrangian at rest has a step that the other has not: it gives an impulse there."""
-    at_rest: dict[Symbol, Expr] = {velocity(x): sp.S.Zero for x in q}
-    rest = [substitute(L, at_rest) for L in (first, second)]
+    rest = [_at_rest(L, q) for L in (first, second)]
     for mine, other, name in ((rest[0], rest[1], "L1"), (rest[1], rest[0], "L2")):
         moves = [part for part in mine.atoms(*PIECED) if part.has(reading.time)]
         if not moves:  # a step that moves may come from a kink of F
             yield is_continuous(mine, q, reading.domain, f"{name} at rest", (other,))
+
+
+def _at_rest(L: Expr, q: Sequence[Symbol]) -> Expr:
+    return substitute(L, {velocity(x): sp.S.Zero for x in q})
+
+
+def _in_motion(L: Expr, q: Sequence[Symbol]) -> Expr:
+    """Return the part of a Lagrangian that holds velocities."""
+    return sp.expand(L - _at_rest(L, q))
 
 
 def routhian_in_momenta(

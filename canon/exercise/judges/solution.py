@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.judges.conserved import motion_of
+from canon.exercise.judges.conserved import mechanical_system, motion_of
 from canon.exercise.judges.energy_and_force import shown_short
 from canon.exercise.judges.invariance import is_instead
 from canon.exercise.question.answer import stay_open
 from canon.exercise.question.continuous_answer import is_continuous
+from canon.exercise.question.jumping_system import check_motion_at_jumps
 from canon.exercise.question.question import Determines, Part, Question, Regular, Same, fails
 from canon.expression.symbols.symbol import Rate, acceleration, time_derivative, velocity
 from canon.expression.symbols.user_input import counted
@@ -62,6 +63,8 @@ def _of_functions(reading: Reading) -> Iterator[Question]:
         if _second_order(reading):
             motion |= {velocity(x): value.diff(t), acceleration(x): value.diff(t, 2)}
     domain = transported(reading.domain, motion)
+    if not reading.has("equations"):
+        check_motion_at_jumps(motion, mechanical_system(reading), domain, reading.domain)
     parts = tuple(Part(name, substitute(e, motion)) for name, e in _equations(reading, motion))
     yield Same(parts, domain, _no_answer, _left_over)
     yield from _initial(reading, {x: motion[x] for x in state if x in motion}, t)

@@ -5,20 +5,27 @@ Such a function may have jumped from one constant to another, which no derivativ
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
+
+import sympy as sp
 
 from canon.exercise.question.deadline import PROOF_SECONDS
 from canon.exercise.question.question import fails
+from canon.proof.analytic import proved_sign
 from canon.proof.continuity.constant_steps import is_locally_constant
 from canon.proof.continuity.continuity import continuity
+from canon.proof.continuity.jumps import continued
+from canon.proof.continuity.one_sided import cuts_of
 from canon.proof.continuity.turns_of_angles import continuity_but_for_turns
+from canon.proof.domain.domain import Domain
+from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from sympy import Expr, Symbol
+    from sympy.logic.boolalg import Boolean
 
-    from canon.proof.domain.domain import Domain
     from canon.proof.domain.verdict import Verdict
 
 __all__ = ["constants_are_continuous", "is_continuous"]
@@ -32,13 +39,26 @@ def is_continuous(
 
 
 def constants_are_continuous(
-    I: Expr, state: Sequence[Symbol], domain: Domain, given: Iterable[Expr] = ()
+    I: Expr,
+    state: Sequence[Symbol],
+    domain: Domain,
+    rates: Callable[[Expr], Sequence[Expr]],
+    given: Iterable[Expr] = (),
 ) -> Iterator[Verdict]:
-    """Yield whether a quantity with vanishing rate is continuous; one that is a number on each piece is told so.
+    """Yield whether a quantity with vanishing rates is continuous; one that is a number on each piece is told so.
 
     An angle that winds may jump by what it grows in a turn, always the same number: its slopes do not jump. A function
-    of it that jumps otherwise, such as exp(θ − t), has another value after each turn, and is no constant.
+    of it that jumps otherwise, such as exp(θ − t), has another value after each turn, and is no constant. Where it
+    jumps at another constant of the motion, as sign(E − 1) E does, no motion comes from one side to the other.
+
+    Parameters
+    ----------
+    I, state, domain, given
+        The quantity, what moves, where, and what is given of the system.
+    rates
+        What vanishes where a function of the state is a constant too: its rate, or its brackets.
     """
+    given = tuple(given)
     verdict = continuity_but_for_turns(I, state, domain, PROOF_SECONDS, str(I), given)
     if verdict.fails and is_locally_constant(I, state, domain):
         why = (
@@ -47,4 +67,23 @@ def constants_are_continuous(
         )
         yield fails(f"{I} is a constant of the motion", why, I)
         return
-    yield verdict
+    kept = None if verdict.holds else _kept_border(I, state, domain, rates)
+    if kept is None:
+        yield verdict
+        return
+    for up, side in ((True, kept > 0), (False, kept < 0)):
+        there = Domain((*domain.conditions, cast("Boolean", side)), domain.box)
+        one_sided = continued(I, kept, state, up=up)
+        if one_sided.has(*state):
+            yield from constants_are_continuous(one_sided, state, there, rates, given)
+
+
+def _kept_border(
+    I: Expr, state: Sequence[Symbol], domain: Domain, rates: Callable[[Expr], Sequence[Expr]]
+) -> Expr | None:
+    """Return what vanishes where I may jump and is a constant of the motion itself."""
+    for cut in cuts_of(I, state):
+        open_ = not cut.bends and proved_sign(cut.gap, domain) == ""
+        if open_ and vanishes(sp.Matrix(rates(cut.gap)), domain, PROOF_SECONDS).holds:
+            return cut.gap
+    return None

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.question.deadline import SIDE_SECONDS
 from canon.exercise.question.equation_systems import same_equations
+from canon.expression.symbols.magnitude import written
 from canon.expression.symbols.symbol import Momentum
 from canon.frozen_mapping import FrozenMapping
 from canon.mechanics.algebra.linear import is_regular
 from canon.mechanics.algebra.substitution import substitute
+from canon.proof.analytic import proved_sign
 from canon.proof.domain.verdict import Status, Undecided, Verdict, all_hold
 from canon.proof.kinks import off_kinks, vanishes_off_kinks
 from canon.proof.vanish import equal, vanishes
@@ -47,6 +49,8 @@ __all__ = [
 
 TELLING = "the answer says something about the motion"
 COMPLETE = "the answer determines every unknown"
+_SMALL = 3
+"""Rows of a matrix of which it is said where it is singular."""
 
 Answer: TypeAlias = "Callable[[], object]"
 """Finds the right answer; called only where a claim fails."""
@@ -156,12 +160,25 @@ class SameEquations:
 
 @dataclass(frozen=True)
 class Regular:
-    """A matrix is regular at generic points; ``name`` is what a person would call it."""
+    """A matrix is regular at generic points.
+
+    Parameters
+    ----------
+    matrix, domain
+        The matrix, and where.
+    name
+        What a person would call it.
+    singular_is
+        What is said where it is singular everywhere.
+    exceptions
+        Whether it is said where it may be singular.
+    """
 
     matrix: sp.MatrixBase
     name: str
     domain: Domain
     singular_is: str = ""
+    exceptions: bool = False
 
 
 @dataclass(frozen=True)
@@ -296,11 +313,23 @@ def decide(question: Question, deadline: Deadline) -> Verdict:
             return all_hold(other, part.name)  # which may be open
         case SameEquations(claimed, right, unknowns, domain, before=before):
             return same_equations(claimed, right, unknowns, domain, deadline, before)
-        case Regular(matrix, name, domain, singular_is):
+        case Regular(matrix, name, domain, singular_is, exceptions):
             off = off_kinks(matrix.flat(), domain)
             seen = matrix.applyfunc(off.seen)
             verdict = off.ask(lambda there: is_regular(seen, there, name), by_point=Status.HOLDS)
+            if verdict.holds and exceptions:
+                return replace(verdict, assumed=(*verdict.assumed, *_singular_places(matrix, name, domain)))
             return replace(verdict, feedback=singular_is or verdict.feedback) if verdict.fails else verdict
+
+
+def _singular_places(matrix: sp.MatrixBase, name: str, domain: Domain) -> Iterator[str]:
+    """Yield where a small matrix may be singular, unless it is proved to be regular everywhere."""
+    if matrix.rows > _SMALL:
+        return
+    determinant = cast("Expr", sp.factor_terms(sp.expand_trig(matrix.det(method="berkowitz"))))
+    if determinant.is_nonzero or proved_sign(determinant, domain) in ("+", "-"):
+        return
+    yield f"{name} is singular where {written(determinant)} = 0; what is claimed is judged elsewhere"
 
 
 def _tells(trivial: Sequence[Same | SameEquations], feedback: str, deadline: Deadline) -> Verdict:

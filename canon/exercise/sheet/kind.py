@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-__all__ = ["COMMON", "USUAL", "Kind", "Shape", "named_function"]
+__all__ = ["BESIDE", "COMMON", "USUAL", "Kind", "Shape", "named_function"]
 
 
 class Shape(enum.Enum):
@@ -59,6 +59,9 @@ COMMON: Mapping[str, Shape] = MappingProxyType(
     }
 )
 """Keys that every claim may have."""
+
+BESIDE = frozenset(("id", "title", "source", "expect", "budget", "points"))
+"""Keys that say nothing of what is claimed: the verdict does not depend on them."""
 
 USUAL = (
     "convention.opposite_sign",

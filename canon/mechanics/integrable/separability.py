@@ -4,14 +4,20 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
+
+import sympy as sp
 
 from canon.expression.symbols.user_input import given_kind
 from canon.mechanics.algebra.all_vanish import all_vanish
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
+from canon.proof.analytic import proved_sign
+from canon.proof.continuity.one_sided import cuts_of
+from canon.proof.continuity.smooth import PIECED
 from canon.proof.domain.domain import as_domain
 from canon.proof.domain.verdict import Evidence, Status, Verdict
 from canon.proof.kinks import vanishes_off_kinks
+from canon.proof.trees.sympy_types import free_symbols
 
 if TYPE_CHECKING:
     from sympy import Expr
@@ -91,6 +97,9 @@ def is_separable(H: Hamiltonian, domain: Domain | None = None, budget: float = 1
     verdict = all_vanish(
         ((name, levi_civita_condition(H, *pair)) for name, pair in words.items()), question, domain, budget
     )
+    if verdict.holds and (bend := _bend_across_pairs(H, as_domain(domain))) is not None:
+        why = f"H has a kink where {bend} = 0, across several coordinates, which Levi-Civita's conditions do not show"
+        return Verdict(Status.UNDECIDED, question, evidence=(Evidence("open", why),), feedback=why)
     if verdict.status is not Status.FAILS:
         return verdict
     condition = verdict.feedback.removeprefix("not so: ")
@@ -98,6 +107,21 @@ def is_separable(H: Hamiltonian, domain: Domain | None = None, budget: float = 1
         return verdict
     first, second = (H.q[k] for k in words[condition])
     return replace(verdict, feedback=f"{first} and {second} do not separate: {condition} fails")
+
+
+def _bend_across_pairs(H: Hamiltonian, domain: Domain) -> Expr | None:
+    """Return what vanishes at a kink of H that is no place of one coordinate and its momentum, as in |x + y|.
+
+    H may separate on both sides of it all the same: V = |x + y| does, whose mixed differences across it do not vanish.
+    """
+    pairs = [{q, p} for q, p in zip(H.q, H.p, strict=True)]
+    for cut in cuts_of(H.H, (*H.q, *H.p)):
+        if not isinstance(cut.part, PIECED) or proved_sign(cut.gap, domain) in ("+", "-"):
+            continue
+        for factor in sp.Mul.make_args(sp.factor(cut.gap)):
+            if sum(bool(pair & free_symbols(factor)) for pair in pairs) > 1:
+                return cast("Expr", factor)
+    return None
 
 
 def _without_momentum(H: Hamiltonian, i: int, domain: Domain, budget: float) -> Verdict | None:

@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from canon.exercise.sheet.kind import BESIDE
 from canon.exercise.sheet.left_sides import is_action, is_definition, label_of
 from canon.exercise.sheet.quantities.given_functions import GivenFunctions, key_at
 from canon.expression.parse import LanguageError, parse_expression, statements_of
@@ -90,7 +91,8 @@ class Sides:
         if label is None or not label.name or label.rates or label.arguments:
             return False
         if not self.can_read(side):
-            names = re.findall(rf"(?<!\w){re.escape(side.said)}(?!\w)", repr(self.keys))
+            said = {key: value for key, value in self.keys.items() if key not in BESIDE}
+            names = re.findall(rf"(?<!\w){re.escape(side.said)}(?!\w)", repr(said))
             return len(names) == 1
         return False
 

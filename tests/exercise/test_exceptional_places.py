@@ -1,0 +1,54 @@
+"""Where a map is singular, where a potential bends across coordinates, and what stands beside a claim."""
+
+import pytest
+
+from canon.exercise.claim_verdict import judge
+from canon.exercise.sheet.sheet import Claim
+
+
+def verdict(kind, name="a", **keys):
+    return judge(Claim(name, kind, keys))
+
+
+@pytest.mark.parametrize("Q", ["q**3", "q**2", "q + sin(q)", "cosh(q)"])
+def test_a_point_transformation_that_is_singular_somewhere_is_said_to_be_so(Q):
+    found = verdict("invariance", of="lagrange-equations", q=["q"], Q=[Q])
+    assert found.holds
+    assert "∂Q/∂q is singular where" in "".join(found.assumed)
+    positive = verdict("invariance", of="lagrange-equations", q=["q"], Q=[Q], domain=["q > 0", "q < 1"])
+    assert positive.holds
+    assert Q == "q + sin(q)" or not positive.assumed
+
+
+@pytest.mark.parametrize(("L", "where"), [("x_dot**3/3", "x_dot"), ("-cos(x_dot)", "cos(x_dot)")])
+def test_velocities_that_can_not_be_eliminated_everywhere_are_said_to_be_so(L, where):
+    found = verdict("legendre-hamiltonian", q=["x"], p=["p"], L=L, exists=True)
+    assert found.holds
+    assert f"{where} = 0" in "".join(found.assumed)
+    free = verdict("legendre-hamiltonian", q=["x"], p=["p"], L="m*x_dot**2/2", exists=True, parameters={"m": "positive"})
+    assert free.holds
+    assert not free.assumed
+
+
+PLANE = {"q": ["x", "y"], "p": ["px", "py"]}
+
+
+@pytest.mark.parametrize("V", ["abs(x + y)", "max(x, y)", "abs(x**2 + y**2 - 1)", "sqrt((x + y)**2)"])
+def test_a_kink_across_coordinates_does_not_separate(V):
+    for said in ("separable", "not separable"):
+        assert verdict("separable", **PLANE, H=f"(px**2 + py**2)/2 + {V}", **{"is": [said]}).undecided
+
+
+@pytest.mark.parametrize("V", ["abs(x) + abs(y - 1)", "max(x, 0) + abs(y)", "abs(sin(x))"])
+def test_kinks_of_one_coordinate_each_do_separate(V):
+    H = f"(px**2 + py**2)/2 + {V}"
+    assert verdict("separable", **PLANE, H=H, **{"is": ["separable"]}).holds
+    assert verdict("separable", **PLANE, H=H, **{"is": ["not separable"]}).fails
+
+
+@pytest.mark.parametrize("name", ["a", "F", "task F", "anna.F@uni.de"])
+def test_the_verdict_does_not_depend_on_what_stands_beside_the_claim(name):
+    keys = {"q": ["x"], "L": "m*x_dot**2/2 - k*x**2/2", "parameters": {"m": "positive", "k": "positive"}}
+    for beside in ({}, {"title": "the force F"}, {"source": "book F"}):
+        assert verdict("euler-lagrange", name, **keys, claim=["m x'' = F = -k x"], **beside).holds
+        assert verdict("euler-lagrange", name, **keys, claim=["m x'' = F = k x"], **beside).fails
