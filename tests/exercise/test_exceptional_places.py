@@ -25,9 +25,8 @@ def test_velocities_that_can_not_be_eliminated_everywhere_are_said_to_be_so(L, w
     found = verdict("legendre-hamiltonian", q=["x"], p=["p"], L=L, exists=True)
     assert found.holds
     assert f"{where} = 0" in "".join(found.assumed)
-    free = verdict("legendre-hamiltonian", q=["x"], p=["p"], L="m*x_dot**2/2", exists=True, parameters={"m": "positive"})
-    assert free.holds
-    assert not free.assumed
+    free = {"q": ["x"], "p": ["p"], "L": "m*x_dot**2/2", "parameters": {"m": "positive"}}
+    assert not verdict("legendre-hamiltonian", **free, exists=True).assumed
 
 
 PLANE = {"q": ["x", "y"], "p": ["px", "py"]}
@@ -52,3 +51,13 @@ def test_the_verdict_does_not_depend_on_what_stands_beside_the_claim(name):
     for beside in ({}, {"title": "the force F"}, {"source": "book F"}):
         assert verdict("euler-lagrange", name, **keys, claim=["m x'' = F = -k x"], **beside).holds
         assert verdict("euler-lagrange", name, **keys, claim=["m x'' = F = k x"], **beside).fails
+
+
+def test_a_frequency_that_the_domain_makes_resonant_is_so():
+    keys = {**PLANE, "actions": ["J1", "J2"], "degree": 4, "parameters": {"w": "positive"},
+            "H": "(px**2 + x**2)/2 + w*(py**2 + y**2)/2 + x**2*y**2", "K": "J1 + w*J2 + J1*J2"}  # fmt: skip
+    assert verdict("normal-form", **keys).holds
+    assert verdict("normal-form", **keys, domain=["w = sqrt(2)"]).holds
+    assert verdict("normal-form", **{**keys, "K": "J1 + w*J2 + 2*J1*J2"}, domain=["w = sqrt(2)"]).fails
+    for resonant in ("w = 1", "w**2 = 1"):
+        assert verdict("normal-form", **keys, domain=[resonant]).undecided

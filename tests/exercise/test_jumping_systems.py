@@ -12,7 +12,11 @@ from canon.exercise.sheet.sheet import Claim
 STEP = {"q": ["q"], "p": ["p"], "H": "p**2/2 + sign(q)"}
 WALL = {"q": ["x", "y"], "p": ["px", "py"], "H": "(px**2 + py**2)/2 + Piecewise((U, x > 0), (0, True))",
         "parameters": {"U": "positive"}}  # fmt: skip
-FORWARDS = {"q": ["x", "y"], "L": "(x_dot**2 + 2*y_dot**2)/2 - U*(1 + sign(x))/2", "parameters": {"U": "positive"}}
+FORWARDS = {
+    "q": ["x", "y"],
+    "L": "(x_dot**2 + 2*y_dot**2)/2 - U*(1 + sign(x))/2",
+    "parameters": {"U": "positive"},
+}
 OSCILLATOR = {"q": ["q"], "p": ["p"], "H": "(p**2 + q**2)/2"}
 FREE = {"q": ["x", "y"], "p": ["px", "py"], "H": "(px**2 + py**2)/2"}
 
@@ -81,7 +85,8 @@ def test_a_motion_on_one_side_of_a_step_is_one():
     ("system", "right", "wrong"),
     [
         (OSCILLATOR, "sign(q**2 + p**2 - 1)*(q**2 + p**2)", "sign(q**2 - p**2 - 1)*(q**2 + p**2)"),
-        (OSCILLATOR, "Piecewise((q**2 + p**2, q**2 + p**2 > 4), (1, True))", "Piecewise((q**2 + p**2, q > 4), (1, True))"),
+        (OSCILLATOR, "Piecewise((q**2 + p**2, q**2 + p**2 > 4), (1, True))",
+         "Piecewise((q**2 + p**2, q > 4), (1, True))"),
         (FREE, "sign(x*py - y*px)*(px**2 + py**2)", "sign(x*py + y*px)*(px**2 + py**2)"),
         (FREE, "acot(px)*py", "acot(x)*py"),
     ],

@@ -32,8 +32,10 @@ from canon.mechanics.perturbation.quadratic_form import NoDiagonalFormError
 from canon.mechanics.perturbation.taylor_parts import NotAnalyticError
 from canon.proof.continuity.jumps import find_jump
 from canon.proof.continuity.one_sided import Cut, cuts_of
+from canon.proof.domain.relations import parts_of
 from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict
 from canon.proof.kinks import vanishes_off_kinks
+from canon.proof.trees.sympy_types import free_symbols
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -329,11 +331,25 @@ def _rate_of_two_scales(reading: Reading, I: Expr, H: Expr, small: Symbol) -> Ex
 
 
 def _autonomous(reading: Reading) -> Expr:
-    """Return H, which must not depend on the time."""
+    """Return H, which must not depend on the time, with the values that the domain gives to parameters.
+
+    Whether frequencies are resonant depends on them.
+    """
     H, t = reading.expression("H"), reading.time
     if H.has(t):
         reading.fault("H", f"depends on {t}; take the phase as an angle with a momentum of its own")
+    state = {*reading.symbols("q"), *reading.symbols("p")}
+    for tie in parts_of(reading.domain.conditions):
+        if isinstance(tie, sp.Eq) and free_symbols(tie) & free_symbols(H) and not free_symbols(tie) & state:
+            H = substitute(H, _value_of(tie))
     return H
+
+
+def _value_of(tie: sp.Eq) -> dict[Symbol, Expr]:
+    for name, value in ((tie.lhs, tie.rhs), (tie.rhs, tie.lhs)):
+        if isinstance(name, Symbol) and not value.has(name):
+            return {name: value}
+    raise Undecided(f"the domain ties parameters, {tie.lhs} = {tie.rhs}: write their values into H")
 
 
 def _small(reading: Reading) -> Symbol:
