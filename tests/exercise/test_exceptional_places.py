@@ -61,3 +61,20 @@ def test_a_frequency_that_the_domain_makes_resonant_is_so():
     assert verdict("normal-form", **{**keys, "K": "J1 + w*J2 + 2*J1*J2"}, domain=["w = sqrt(2)"]).fails
     for resonant in ("w = 1", "w**2 = 1"):
         assert verdict("normal-form", **keys, domain=[resonant]).undecided
+
+
+def test_a_sum_of_arcs_is_the_number_that_it_is():
+    assert verdict("number", value="atan(1/2) + atan(1/3)", claim="pi/4").holds
+    assert verdict("number", value="atan(1/2) + atan(1/3)", claim="pi/3").fails
+
+
+def test_a_square_of_what_stands_beside_it_is_an_equation():
+    """In v² = g r cos θ, v = r θ' the second one says what v is, whichever comes first."""
+    ball = {"q": ["r", "theta"], "parameters": {"m": "positive", "g": "positive", "a": "positive"},
+            "L": "m*(r_dot**2 + r**2*theta_dot**2)/2 - m*g*r*cos(theta)", "contact": "r - a"}  # fmt: skip
+    for leaves, right in (
+        ("v**2 = a*g*cos(theta), v = a*theta_dot", True),
+        ("v**2 = 2*a*g*cos(theta), v = a*theta_dot", False),
+    ):
+        for said in (leaves, ", ".join(reversed(leaves.split(", ")))):
+            assert verdict("leaving-condition", **ball, leaves=said).holds == right

@@ -52,6 +52,8 @@ class _Tolerance:
         Undecided
             Where that was not decided.
         """
+        if self.amount == 0 and vanishes(claimed - right, budget=self.seconds).holds:
+            return True  # its square is another expression, multiplied out
         reach = self.amount**2 * (_square(right) if self.relative else 1)
         return sign_of(_square(claimed - right) - reach, self.seconds) <= 0
 

@@ -104,7 +104,7 @@ def _apart(
     found = True
     while found:
         found = False
-        for statement in sorted(kept, key=_names_no_constant):
+        for statement in sorted(kept, key=_turn):
             definition = _definition(statement, _with_names(scope, defined), is_asked)
             if definition is not None:
                 defined.append(definition)
@@ -114,10 +114,15 @@ def _apart(
     return defined, kept
 
 
-def _names_no_constant(statement: Statement) -> bool:
-    """Tell the definitions of I, e and the like, which come first: they are none of the constants of these names."""
-    label = label_of(_said(statement.sides[0]))
-    return label is None or label.name not in (*CONSTANTS, *OTHER_NAMES)
+def _turn(statement: Statement) -> tuple[bool, bool]:
+    """Return what sorts statements: definitions of I, e and the like come first, which are no constants then.
+
+    Those of squares come last: in ``v² = g r, v = r θ'`` the first is an equation.
+    """
+    said = _said(statement.sides[0])
+    label = label_of(said)
+    is_constant = label is not None and label.name in (*CONSTANTS, *OTHER_NAMES)
+    return not is_constant, _SQUARED.search(said) is not None
 
 
 def _with_names(scope: Scope, defined: Sequence[_Definition]) -> Scope:
