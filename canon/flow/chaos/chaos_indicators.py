@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.expression.symbols.user_input import counted
-from canon.flow.chaos.regularity import Judged, Regularity, judged_growth, mean_megno
+from canon.flow.chaos.regularity import Judged, Regularity, judged_growth, mean_megno, of_true_orbits
 from canon.flow.tangent.deviation_frame import given_frame, random_vectors
 from canon.flow.tangent.deviation_growth import DeviationRun, deviation_growth, deviation_task
 
@@ -68,6 +68,7 @@ class ChaosIndicator:
 
 def indicator_of(name: str, growth: DeviationGrowth, history: Array, judged: Judged) -> ChaosIndicator:
     """Return an indicator from its history, shape (times, orbits), and the verdicts."""
+    judged = of_true_orbits(judged, growth.energy_error)
     only = 0 if growth.single else slice(None)
     own = history[:, only]
     return ChaosIndicator(

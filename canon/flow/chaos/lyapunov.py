@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.expression.symbols.user_input import counted
-from canon.flow.chaos.regularity import Regularity, judged_growth
+from canon.flow.chaos.regularity import Regularity, judged_growth, of_true_orbits
 from canon.flow.tangent.deviation_frame import random_frame
 from canon.flow.tangent.deviation_growth import DeviationRun, deviation_growth, deviation_task
 
@@ -222,18 +222,20 @@ def largest_lyapunov_exponent(
 
 def _spectrum(growth: DeviationGrowth, size: int) -> LyapunovSpectrum:
     t, log = growth.t, growth.log
-    judged = judged_growth(t, log[0])
+    judged = of_true_orbits(judged_growth(t, log[0]), growth.energy_error)
     begin = len(t) // _ALIGNING
     exponents = (log[:, -1] - log[:, begin]) / (t[-1] - t[begin])
     errors = np.hypot(_error(t[begin:], log[:, begin:]), _SLOW / t[-1])
     history = np.zeros_like(log)
     history[:, 1:] = log[:, 1:] / t[1:, np.newaxis]
     only = 0 if growth.single else slice(None)
+    # Where all are near zero the vectors have not settled into their order.
+    falling = np.argsort(-exponents, axis=0, kind="stable")
     return LyapunovSpectrum(
-        exponents[:, only],
-        errors[:, only],
+        np.take_along_axis(exponents, falling, 0)[:, only],
+        np.take_along_axis(errors, falling, 0)[:, only],
         t,
-        history[:, :, only],
+        np.take_along_axis(history, falling[:, np.newaxis], 0)[:, :, only],
         judged.verdicts[only],
         judged.detection_limit,
         judged.reasons[only],

@@ -7,7 +7,7 @@ orbits that are known to be the one or the other: benchmarks/chaos.py counts its
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +19,16 @@ if TYPE_CHECKING:
 
     from canon.array import Array
 
-__all__ = ["Judged", "Regularity", "judged_growth", "mean_megno", "mean_over_time", "megno_of", "quarters"]
+__all__ = [
+    "Judged",
+    "Regularity",
+    "judged_growth",
+    "mean_megno",
+    "mean_over_time",
+    "megno_of",
+    "of_true_orbits",
+    "quarters",
+]
 
 
 class Regularity(enum.Enum):
@@ -62,6 +71,10 @@ CHAOTIC_GROWTH, REGULAR_GROWTH = 4.0, 2.0
 """ln of the growth from the second quarter of the run to the last: 0.86 b of a power, λT/2 of an exponential."""
 
 
+FAR_OFF = 0.05
+"""Of orbits whose energy has changed by such a part nothing is said."""
+
+
 def judged_growth(t: Array, log: Array) -> Judged:
     """Judge orbits by how a deviation has grown.
 
@@ -101,6 +114,29 @@ def judged_growth(t: Array, log: Array) -> Judged:
         for verdict, m, g in zip(found, megno, late, strict=True)
     )
     return Judged(found, limit, reasons)
+
+
+def of_true_orbits(judged: Judged, energy_error: Array) -> Judged:
+    """Return verdicts that say nothing of orbits whose energy is far off: they are not the system's.
+
+    Parameters
+    ----------
+    judged
+        The verdicts.
+    energy_error
+        How much H has changed, as part of its size, shape (orbits,).
+    """
+    wrong = (energy_error > FAR_OFF) & (judged.verdicts != Regularity.LEFT)
+    if not wrong.any():
+        return judged
+    reasons = tuple(
+        f"the energy has changed by {off:.2g} of its size, so that this is not the system's motion: take a shorter "
+        "step, or Taylor()"
+        if far
+        else reason
+        for far, off, reason in zip(wrong, energy_error, judged.reasons, strict=True)
+    )
+    return replace(judged, verdicts=np.where(wrong, Regularity.NOT_KNOWN, judged.verdicts), reasons=reasons)
 
 
 def quarters(t: Array) -> tuple[slice, slice]:

@@ -120,7 +120,14 @@ def reversal_test(
     history = np.array(found)
     spans = np.array([abs(float(end - begin)) / 2**halvings for halvings in range(_SPANS - 1, -1, -1)])
     growth = DeviationGrowth(
-        spans, history[np.newaxis], None, np.empty(0), np.empty(0), task.single, str(chosen)
+        spans,
+        history[np.newaxis],
+        None,
+        np.empty(0),
+        np.empty(0),
+        task.single,
+        str(chosen),
+        np.zeros(len(size)),
     )
     return indicator_of("reversal error", growth, history, _judged(history, floor, float(spans[-1])))
 

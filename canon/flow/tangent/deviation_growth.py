@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from canon.expression.graph.number_systems import FLOAT64
 from canon.flow.checked_request import two_ends
 from canon.flow.fixed_step.advance import Interruption
 from canon.flow.kinked.place import Place
 from canon.flow.kinked.regimes import kinks_of
 from canon.flow.kinked.saltation import jumps_near
 from canon.flow.request import Request
+from canon.flow.run.values_at_states import energy_and_rates, size_of_energy
 from canon.flow.system_request import any_task, refuse_contacts
 from canon.flow.tangent.compiled_deviations import CompiledDeviations
 from canon.flow.tangent.tangent_loop import has_tangent_loop
@@ -63,6 +65,9 @@ class DeviationGrowth:
         Whether one state was given rather than several.
     method
         What carried the motion, in words.
+    energy_error
+        How much H has changed at the end, as part of it or of a tenth of its terms, shape (orbits,); 0 where H is no
+        constant.
     """
 
     t: Array
@@ -72,6 +77,7 @@ class DeviationGrowth:
     left_at: Array
     single: bool
     method: str
+    energy_error: Array
 
 
 @dataclass(frozen=True)
@@ -242,8 +248,31 @@ def deviation_growth(
     lost = ~np.isfinite(log).all(axis=0)
     left_at = np.where(lost.any(axis=0), t[np.argmax(lost, axis=0)], np.inf)
     states = np.concatenate([each[2] for each in found], axis=1)
-    return DeviationGrowth(t, log, noted, states, left_at, task.single, str(task.method))
+    error = _energy_error(task, states)
+    return DeviationGrowth(t, log, noted, states, left_at, task.single, str(task.method), error)
 
+
+def _energy_error(task: Task, last: Array) -> Array:
+    system, first = task.system, task.states[0]
+    if not system.autonomous or system.kicked or system.spare:
+        return np.zeros(first.shape[1])
+    begin, end = (float(task.plan.instants[k]) for k in (0, -1))
+    with np.errstate(all="ignore"):
+        before, after = (
+            np.asarray(energy_and_rates(system, states, t, FLOAT64)[0])
+            for states, t in ((first, begin), (last, end))
+        )
+        times = np.array([begin, end])
+        sizes = size_of_energy(system, np.stack([first, last], axis=1), times)
+        size = np.max([np.abs(before), _SHARE * sizes.min(axis=0), _RESOLVED * sizes.max(axis=0)], axis=0)
+        return np.nan_to_num(np.abs(after - before) / size) * np.ones(first.shape[1])
+
+
+_SHARE = 0.1
+"""Where H is smaller than this part of its terms, they say what is large."""
+
+_RESOLVED = 1e-6
+"""Of terms that cancel nothing finer is looked at."""
 
 _LEAST = 64
 """Orbits that are worth a thread."""
