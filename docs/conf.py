@@ -58,7 +58,7 @@ extensions = [
 ]
 myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
-exclude_patterns = ["_build", "_templates", "README.md", "paper", "gallery/**.ipynb"]
+exclude_patterns = ["_build", "jupyter_execute", "_templates", "README.md", "paper", "gallery/**.ipynb"]
 
 nb_execution_mode = "force"  # a cached page would not know that canon has changed
 nb_execution_raise_on_error = True
