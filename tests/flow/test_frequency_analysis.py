@@ -147,3 +147,12 @@ def test_errors_of_noisy_signals_and_of_lines_that_are_near_are_no_accident():
             found = frequency_analysis(t, values, terms=2)
             k = np.argmin(abs(found.frequencies - w))
             assert abs(found.frequencies[k] - w) < 4 * found.errors[k]
+
+
+def test_an_angle_that_turns_is_refused_and_its_sine_is_not():
+    t = np.linspace(0, 500, 4001)
+    angle = 1.968 * t + 0.3 * np.sin(1.968 * t)
+    for follow in (frequency_analysis, frequency_diffusion):
+        with pytest.raises(ValueError, match="goes on in one direction"):
+            follow(t, angle)
+    assert frequency_diffusion(t, np.sin(angle)).first == pytest.approx(1.968, rel=1e-9)

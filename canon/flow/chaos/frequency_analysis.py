@@ -161,6 +161,10 @@ _MOVES, _STAYS = 2.0, 1e-3
 """In parts of 2π over half of the time. Regular orbits whose lines are too near to be told apart move by up to 1.4."""
 
 
+_STRAIGHT = 0.05
+"""A signal of which a straight line leaves a smaller part goes on, or has a period of ten times the span."""
+
+
 def frequency_diffusion(t: npt.ArrayLike, values: npt.ArrayLike, *, window: int = 2) -> FrequencyDiffusion:
     """Return how far the main frequency of a signal moves from the first half of the times to the second.
 
@@ -231,7 +235,20 @@ def _checked(t: npt.ArrayLike, values: npt.ArrayLike) -> tuple[Array, npt.NDArra
             "the times are not evenly spaced: take samples= that divides the number of steps, or Taylor(), which is "
             "sampled anywhere"
         )
+    if _goes_on(even, signal):
+        raise ValueError(
+            "the signal goes on in one direction, as an angle that turns does, and has no lines: give the sine of the "
+            "angle, or np.exp(1j * angle)"
+        )
     return times, signal
+
+
+def _goes_on(t: Array, signal: npt.NDArray[Any]) -> bool:
+    """Tell whether a straight line is nearly all of a signal."""
+    if np.iscomplexobj(signal):
+        return False
+    beside = signal - np.polynomial.Polynomial.fit(t, signal, 1)(t)
+    return bool(np.std(beside) < _STRAIGHT * np.std(signal))
 
 
 def _window(count: int, power: int) -> Array:
