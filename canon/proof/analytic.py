@@ -157,6 +157,9 @@ def proved_sign(expr: Expr, domain: Domain) -> str:
     >>> x = sp.Symbol("x", real=True)
     >>> proved_sign(x**2 + 1, Domain()), proved_sign(x, Domain())
     ('+', '')
+    >>> a = sp.Symbol("a", real=True, nonzero=True)
+    >>> proved_sign(a**2, Domain()), proved_sign(x**2, Domain())
+    ('+', '0+')
     """
     parts: dict[Hashable, Any] = {}
     capacity = 16
@@ -164,7 +167,8 @@ def proved_sign(expr: Expr, domain: Domain) -> str:
     for _ in range(MOST_STARTS):
         try:
             forms = NormalForm(domain, parts, deadline, QUICK, capacity)
-            return forms.sign(forms.form(expr))
+            sign = forms.sign(forms.form(expr))
+            return sign.removeprefix("0") if expr.is_nonzero else sign
         except Refine:
             continue
         except Full:

@@ -78,3 +78,17 @@ def test_a_square_of_what_stands_beside_it_is_an_equation():
     ):
         for said in (leaves, ", ".join(reversed(leaves.split(", ")))):
             assert verdict("leaving-condition", **ball, leaves=said).holds == right
+
+
+@pytest.mark.parametrize(
+    ("exact", "right", "wrong"),
+    [
+        ("sqrt(x**2 + e)", "abs(x) + e/(2*abs(x))", "x + e/(2*x)"),
+        ("log(x**2 + e)", "log(x**2) + e/x**2", "2*log(x) + e/x**2"),
+        ("(x**2 + e)**(3/2)", "abs(x)**3 + 3*abs(x)*e/2", "x**3 + 3*x*e/2"),
+    ],
+)
+def test_expansions_about_what_is_not_zero(exact, right, wrong):
+    keys = {"exact": [exact], "small": ["e"], "parameters": {"e": "real", "x": "nonzero"}}
+    assert verdict("first-order", **keys, claim=[right]).holds
+    assert verdict("first-order", **keys, claim=[wrong]).fails
