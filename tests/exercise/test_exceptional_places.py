@@ -92,3 +92,14 @@ def test_expansions_about_what_is_not_zero(exact, right, wrong):
     keys = {"exact": [exact], "small": ["e"], "parameters": {"e": "real", "x": "nonzero"}}
     assert verdict("first-order", **keys, claim=[right]).holds
     assert verdict("first-order", **keys, claim=[wrong]).fails
+
+
+@pytest.mark.parametrize("sign", ["", "-", "±"])
+def test_a_speed_of_leaving_is_that_of_one_sense_or_of_both(sign):
+    """A ball that slides from the top of a sphere leaves at cos θ = 2/3, on either side."""
+    ball = {"q": ["r", "theta"], "parameters": {"m": "positive", "g": "positive", "a": "positive"},
+            "L": "m*(r_dot**2 + r**2*theta_dot**2)/2 - m*g*r*cos(theta)", "contact": "r - a",
+            "integrals": ["m*a**2*theta_dot**2/2 + m*g*a*cos(theta) = m*g*a"]}  # fmt: skip
+    found = judge(Claim("a", "leaving-condition", {**ball, "leaves": f"theta' = {sign}sqrt(2*g/(3*a))"}))
+    assert found.holds
+    assert verdict("leaving-condition", **ball, leaves=f"theta' = {sign}sqrt(g/(3*a))").fails

@@ -99,6 +99,8 @@ def leaving_condition(reading: Reading) -> Iterator[Question]:
     multipliers = tuple(sp.Dummy(f"lam{i}", real=True) for i in range(1 + len(others)))
     (leaves,) = reading.equations("leaves")
     deadline = Deadline.after(0.8 * reading.claim.budget)
+    met = False
+    elsewhere: list[str] = []
     for motion in _motions(reading, (contact, *others), multipliers, (leaves,)):
         force = sp.cancel(sp.together(motion.solution[multipliers[0]]))
         claimed = motion.along(leaves)
@@ -106,12 +108,17 @@ def leaving_condition(reading: Reading) -> Iterator[Question]:
             yield fails(TELLING, "this says nothing about the motion: it holds all along the contact")
             return
         if claimed.is_nonzero or proved_sign(claimed, motion.branch.domain) in ("+", "-"):
-            reading.fault("leaves", "holds nowhere along the contact")
+            elsewhere += [f"the motion with {v} = {shown_short(f)}" for v, f in motion.branch.values.items()]
+            continue
+        met = True
         q = reading.symbols("q")
         verdict = _same_zeros(force, claimed, motion.branch, q, deadline)
         if verdict.fails and (place := _place_of_an_angle(leaves, force, q)) is not None:
             verdict = _same_zeros(force, motion.along(place), motion.branch, q, deadline)
         yield Stated(verdict, lambda force=force: f"the reaction {shown_short(sp.factor_terms(force))} = 0")
+    if not met:
+        reading.fault("leaves", "holds nowhere along the contact")
+    yield Determines(lambda: stay_open(elsewhere))
 
 
 def _force_is_the_rest(reading: Reading, constraints: Sequence[Expr], multipliers: Sequence[Symbol]) -> bool:
