@@ -43,7 +43,7 @@ def periodic_orbit(
 
     Newton's method solves Φ_T(y) = y + turns for y and T, with steps at right angles to the orbit, at constant energy,
     or at constant period. A system that depends on time keeps the period that is given, which is to be a multiple of
-    its own.
+    its own. Everything is measured by the trial orbit itself, so that units do not matter.
 
     Parameters
     ----------
@@ -72,7 +72,8 @@ def periodic_orbit(
     NoPeriodicOrbitError
         Newton's method does not come to an end; the error has the nearest it came.
     TypeError, ValueError, KeyError
-        As ``propagate``; the system is no Hamiltonian; the reversal is none of its symmetries.
+        As ``propagate``; the system is no Hamiltonian; the reversal is none of its symmetries; it depends on time, and
+        is not the same after the period.
 
     Examples
     --------
@@ -135,8 +136,8 @@ def _search(
         else task.states[0] + task.states[1]
     )
     if signs is not None:
-        search.check_reversal(start)
         start = np.where(signs < 0, 0.0, start)
+        search.check_reversal(start, float(given.t_span[1]))
     return search, start
 
 
