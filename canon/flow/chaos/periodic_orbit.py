@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from canon.flow.chaos.period_of_drive import check_period_of_drive
 from canon.flow.chaos.periodic_search import PeriodicOrbit, PeriodicSearch
 from canon.flow.request import Request
 from canon.flow.system.named_values import variables_of
@@ -88,6 +89,9 @@ def periodic_orbit(
         samples=1,
     )  # fmt: skip
     search, start = _search(given, reversal, turns, fixed_period=fixed_period)
+    driven = not (search.equations.autonomous or search.equations.kicked)
+    if driven:
+        check_period_of_drive(search.equations, search.course(start, float(period)), float(period))
     wanted = energy if energy is not None else None if search.fixed_period else search.energy(start)
     if energy is not None and search.fixed_period:
         raise ValueError("the period is fixed, so that the energy follows: give one of them")
