@@ -71,7 +71,7 @@ class OrbitScale:
         return M * self.state[:, np.newaxis] / self.state
 
 
-def orbit_scale(equations: HamiltonEquations, course: Array, period: float) -> OrbitScale:
+def orbit_scale(equations: HamiltonEquations, course: Array, shift: Array, period: float) -> OrbitScale:
     """Return the scale of a trial orbit.
 
     Parameters
@@ -80,14 +80,18 @@ def orbit_scale(equations: HamiltonEquations, course: Array, period: float) -> O
         The equations.
     course
         States along it, shape (2n, times).
+    shift
+        What angles gain in a period, which is no swing of theirs.
     period
         Its period.
     """
     n = len(course) // 2
-    swings, sizes = np.ptp(course, axis=1), abs(course).max(axis=1)
+    turned = np.outer(shift, np.linspace(0.0, 1.0, course.shape[1]))
+    swings, sizes = np.ptp(course - turned, axis=1), abs(course).max(axis=1)
     swings = np.where(swings > _RESTS * sizes, swings, 0.0)
     actions = swings[:n] * swings[n:]
     moves = (actions > _RESTS**2 * actions.max(initial=0.0)) & (actions > 0)
+    moves &= not equations.kicked  # a few iterates of a map show no swings
     ratios = np.divide(swings[:n], swings[n:], out=np.zeros(n), where=moves)
     if not moves.all():
         ratios = np.where(moves, ratios, _ratios_of_oscillators(equations, course, abs(period)))

@@ -140,6 +140,7 @@ class PeriodicSearch:
     def flow(self, y: Array, time: float, scale: OrbitScale) -> tuple[Array, Array]:
         """Return where a state is after a time, and the derivative by the state, as a pure number."""
         r = self.request
+        largest = max(1.0, float(abs(y / scale.state).max()))
         found = flow_jacobian(
             r.system,
             (0.0, time),
@@ -148,7 +149,7 @@ class PeriodicSearch:
             step=r.step,
             tolerance=r.tolerance,
             parameters=r.parameters,
-            sizes=scale.state,
+            sizes=scale.state * largest,
         )
         return found.y[:, -1], scale.bare(found.final)
 
@@ -160,7 +161,7 @@ class PeriodicSearch:
 
     def scale(self, y: Array, period: float) -> OrbitScale:
         """Return the sizes that a trial orbit is measured by."""
-        return orbit_scale(self.equations, self.course(y, period), period)
+        return orbit_scale(self.equations, self.course(y, period), self.shift, period)
 
     def check_reversal(self, y: Array, period: float) -> None:
         """Refuse signs that do not reverse the motion: S f(S y) = −f(y) is to hold.
