@@ -9,7 +9,8 @@ import pytest
 import sympy as sp
 from scipy.special import ellipk
 
-from canon import Hamiltonian, Lagrangian, Splitting, coordinates, propagate
+from canon import Hamiltonian, Lagrangian, Splitting, coordinates, parameters, propagate
+from canon import time as t
 from canon.flow import (
     NoPeriodicOrbitError,
     continue_family,
@@ -64,8 +65,8 @@ def test_multipliers_of_two_oscillators_and_their_krein_signs(sign: int) -> None
 
 
 def test_a_system_that_depends_on_time_keeps_its_period() -> None:
-    t = sp.Symbol("t", real=True)
-    driven = Hamiltonian(x.momentum**2 / 2 + x**2 - x * sp.cos(t), [x], [x.momentum], t)
+    clock = sp.Symbol("t", real=True)
+    driven = Hamiltonian(x.momentum**2 / 2 + x**2 - x * sp.cos(clock), [x], [x.momentum], clock)
     orbit = periodic_orbit(driven, [0.4, 0.3], 2 * np.pi)
     # ẍ + 2x = cos t is answered by x = cos t; others turn by √2 in the meantime.
     assert orbit.y == pytest.approx([1.0, 0.0], abs=1e-12)
@@ -247,6 +248,138 @@ def test_a_guess_may_be_as_near_as_it_likes(start: float, off: float) -> None:
 def test_an_equilibrium_is_no_orbit(H: object, start: list[float], more: dict[str, bool]) -> None:
     with pytest.raises(NoPeriodicOrbitError, match="equilibrium"):
         periodic_orbit(H, start, 6.0, **more)
+
+
+@pytest.mark.parametrize("turns", [1, 3])
+def test_a_drive_may_turn_several_times_in_a_period(turns: int) -> None:
+    orbit = periodic_orbit(driven(sp.cos(3 * t)), [0.1, 0.0], turns * 2 * np.pi / 3)
+    # ẍ + 2x = cos 3t is answered by x = −cos(3t)/7.
+    assert orbit.y == pytest.approx([-1 / 7, 0], abs=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("drive", "period"),
+    [
+        *itertools.product([sp.cos(t), sp.cos(t) + sp.exp(-t)], [6.28, 6.2831853, 6.0, np.pi]),
+        (sp.cos(t) + sp.exp(-t), 2 * np.pi),
+        (sp.sign(sp.sin(t)), 6.28),
+        (t, 1.0),
+    ],
+)
+def test_a_drive_that_has_another_period_is_told(drive: sp.Expr, period: float) -> None:
+    with pytest.raises(
+        ValueError, match=rf"H is not the same after {period}: .* multiple of the drive's period"
+    ):
+        periodic_orbit(driven(drive), [0.2, 0.0], period)
+
+
+def test_a_drive_that_switches_has_its_period() -> None:
+    orbit = periodic_orbit(driven(sp.sign(sp.sin(t))), [0.2, 0.0], 2 * np.pi)
+    half, w = np.pi, np.sqrt(2)
+    # ẍ + 2x = ±1 and x(t + π) = −x(t): x = ½ + a cos wt + b sin wt with x(0) = −x(π), ẋ(0) = −ẋ(π), so that a = −½.
+    b = -np.sin(w * half) / (2 * (1 + np.cos(w * half)))
+    assert orbit.y == pytest.approx([0.0, w * b], abs=1e-12)
+
+
+def driven(force: sp.Expr) -> Hamiltonian:
+    return Hamiltonian(x.momentum**2 / 2 + x**2 - x * force, [x], [x.momentum])
+
+
+UNITS = [
+    (1.0, 1.0, 1.0), (1e-6, 1.0, 1.0), (1e-10, 1.0, 1.0), (1.0, 1.0, 1e-25), (1e-5, 1e-7, 2.2e-25), (1e8, 1e5, 1e20),
+    (1e-10, 1e5, 1e-25),
+]  # fmt: skip
+"""Of length, time and mass."""
+
+m, l, a = parameters("m l a", positive=True)
+
+
+def in_units(V: sp.Expr, *q: sp.Symbol) -> Hamiltonian:
+    """Return the Hamiltonian with a potential that is written in the units m, l and a of mass, length and time."""
+    own = V.xreplace({s: s / l for s in q}) * m * l**2 / a**2
+    return Hamiltonian(sum(s.momentum**2 for s in q) / (2 * m) + own, list(q), [s.momentum for s in q])
+
+
+def found_in(
+    units: tuple[float, float, float], H: Hamiltonian, start: list[float], period: float, **how: object
+):
+    """Return the state, period and energy of an orbit as pure numbers, and what was found."""
+    L, T, M = units
+    size = np.repeat([L, M * L / T], len(start) // 2)
+    found = periodic_orbit(H, size * start, period * T, parameters={m: M, l: L, a: T}, **how)
+    return np.array([*found.y / size, found.period / T, found.energy * T**2 / (M * L**2)]), found
+
+
+def duffing_period(energy: float) -> float:
+    """Return the period of ẍ = −x − x³: x = A cn(wt, k²), w² = 1 + A², k² = A²/2w²."""
+    square = np.sqrt(1 + 4 * energy) - 1
+    return float(4 * ellipk(square / (2 * (1 + square))) / np.sqrt(1 + square))
+
+
+@pytest.mark.parametrize("units", UNITS)
+@pytest.mark.parametrize("how", [{}, {"reversal": ["p_x"]}])
+def test_the_period_of_an_anharmonic_oscillator_in_any_units(
+    units: tuple[float, ...], how: dict[str, list[str]]
+):
+    numbers, _ = found_in(units, in_units(x**2 / 2 + x**4 / 4, x), [1.0, 0.0], 5.0, **how)
+    assert numbers[-1] == pytest.approx(0.75, rel=1e-12)
+    assert numbers[-2] == pytest.approx(duffing_period(0.75), rel=1e-12)
+
+
+@pytest.mark.parametrize("units", UNITS)
+def test_an_unstable_orbit_and_its_multipliers_are_the_same_in_any_units(units: tuple[float, ...]) -> None:
+    H = in_units((x**2 + y**2) / 2 + x**2 * y - y**3 / 3, x, y)
+    natural = periodic_orbit("henon-heiles", [0.01, 0.1, 0.4, 0.1], 6.5)
+    numbers, orbit = found_in(units, H, [0.01, 0.1, 0.4, 0.1], 6.5)
+    assert numbers == pytest.approx([*natural.y, natural.period, natural.energy], abs=1e-9)
+    assert orbit.multipliers.indices.real == pytest.approx(natural.multipliers.indices.real, abs=1e-9)
+    assert orbit.multipliers.kinds == ("hyperbolic",)
+
+
+@pytest.mark.parametrize("units", UNITS)
+def test_an_equilibrium_is_none_in_any_units(units: tuple[float, ...]) -> None:
+    H = in_units((x**2 + y**2) / 2 + x**2 * y - y**3 / 3, x, y)
+    for start in ([0.0, 1.0, 0.0, 0.0], [1e-4, 0.9999, 0.0, 0.0]):
+        with pytest.raises(NoPeriodicOrbitError, match="equilibrium"):
+            found_in(units, H, start, 6.0, fixed_period=True)
+
+
+@pytest.mark.parametrize("units", UNITS)
+def test_an_orbit_has_the_energy_that_is_asked_for(units: tuple[float, ...]) -> None:
+    """The start closes by itself, with another energy."""
+    energy = 2.0 * units[2] * (units[0] / units[1]) ** 2
+    numbers, _ = found_in(units, in_units(x**2 / 2 + y**2, x, y), [1.0, 0, 0, 0], 2 * np.pi, energy=energy)
+    assert numbers[-2:] == pytest.approx([2 * np.pi, 2.0], rel=1e-12)
+
+
+@pytest.mark.parametrize("units", UNITS)
+@pytest.mark.parametrize("start", [[1.0, 0.0, 0.0, 2.0], [1.0, 0.0, 0.01, 2.0]])
+def test_a_circle_in_polar_coordinates_in_any_units(units: tuple[float, ...], start: list[float]) -> None:
+    """Neither r, its momentum nor p_y moves on it: y is an angle here, of another kind than r."""
+    L, T, M = units
+    V = m * l**2 / a**2 * (x / l) ** 4
+    H = Hamiltonian((x.momentum**2 + y.momentum**2 / x**2) / (2 * m) + V, [x, y], [x.momentum, y.momentum])
+    size = np.array([L, 1.0, M * L / T, M * L**2 / T])
+    circle = periodic_orbit(
+        H, size * start, 3.14 * T, parameters={m: M, l: L, a: T}, turns={"y": 2 * np.pi}, fixed_period=True
+    )
+    # p_y² = 4 r⁶ there, the angle turns at 2r, and r oscillates with the frequency √(3 + 3) times that.
+    assert circle.y[0] / L == pytest.approx(np.pi / 3.14, rel=1e-12)
+    assert circle.y[3] / size[3] == pytest.approx(2 * (np.pi / 3.14) ** 3, rel=1e-12)
+    assert circle.multipliers.indices.real == pytest.approx([2 * np.cos(2 * np.pi * np.sqrt(6))], abs=1e-9)
+
+
+@pytest.mark.parametrize("units", UNITS)
+def test_a_family_is_the_same_in_any_units(units: tuple[float, ...]) -> None:
+    L, T, M = units
+    _, first = found_in(units, in_units(x**2 / 2 + x**4 / 4, x), [0.3, 0.0], 6.2, reversal=["p_x"])
+    family = continue_family(first, 6, 0.1)
+    energies, periods = family.energies * T**2 / (M * L**2), family.periods / T
+    assert periods == pytest.approx([duffing_period(energy) for energy in energies], rel=1e-11)
+    _, ordinary = found_in((1, 1, 1), in_units(x**2 / 2 + x**4 / 4, x), [0.3, 0.0], 6.2, reversal=["p_x"])
+    natural = continue_family(ordinary, 6, 0.1)
+    assert len(natural.orbits) == 6
+    assert energies == pytest.approx(natural.energies, rel=1e-9)
 
 
 LYAPUNOV = {

@@ -75,7 +75,7 @@ def manifold_starts(
     request = orbit.search.request
     found = flow_jacobian(
         request.system, (0.0, way), orbit.y, method=request.method, step=request.step,
-        tolerance=request.tolerance, parameters=request.parameters, samples=count,
+        tolerance=request.tolerance, parameters=request.parameters, samples=count, sizes=orbit.scale.state,
     )  # fmt: skip
     parts = len(found.t) - 1
     places = np.arange(parts) * (1 if forward else -1) % parts  # in the order of time

@@ -9,6 +9,7 @@ import numpy as np
 
 from canon.expression.symbols.user_input import counted
 from canon.flow.chaos.periodic_search import NoPeriodicOrbitError, PeriodicOrbit, PeriodicSearch
+from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.progress import reporting
 
 if TYPE_CHECKING:
@@ -88,7 +89,8 @@ def continue_family(
     """Follow a family of periodic orbits of a Hamiltonian from one of them.
 
     The next orbit is looked for along the tangent of the family in (y, T), and made to close at right angles to it, so
-    that folds in energy and period are passed.
+    that folds in energy and period are passed. Lengths and angles are those of pure numbers: each variable is measured
+    by the scale of the last orbit, and the period by itself.
 
     Parameters
     ----------
@@ -97,8 +99,9 @@ def continue_family(
     count
         How many orbits at most, the first one included.
     step
-        The first distance in (y, T) from one to the next; of either sign, for the two directions: positive where the
-        energy grows at first. It is made longer and shorter on the way, at most ten times as long.
+        The first distance from one to the next, in parts of the orbit's swing and its period, such as 0.1; of either
+        sign, for the two directions: positive where the energy grows at first. It is made longer and shorter on the
+        way, at most ten times as long.
     to_energy
         End with the first orbit beyond this energy.
     progress
@@ -141,8 +144,9 @@ def continue_family(
                     break
                 continue
             bifurcations += _bifurcations(search, orbits[-1], following, tangent, length)
+            tangent = _tangent(following, tangent / orbits[-1].scale.both)
             orbits.append(following)
-            tangent, length = _tangent(following, tangent), min(length * _LONGER, 10 * abs(step))
+            length = min(length * _LONGER, 10 * abs(step))
             report(len(orbits) / count)
             if to_energy is not None and _beyond(to_energy, orbit.energy, following.energy):
                 ended = f"the energy {to_energy:g} is reached"
@@ -158,22 +162,24 @@ def _next(
     search: PeriodicSearch, orbit: PeriodicOrbit, tangent: Array, length: float
 ) -> PeriodicOrbit | None:
     """Return the orbit at a distance along the tangent, or None where there is none near."""
-    ahead = np.append(orbit.y, orbit.period) + length * tangent
+    sizes = orbit.scale.both
+    ahead = np.append(orbit.y, orbit.period) + length * tangent * sizes
     if ahead[-1] <= 0:
         return None
     try:
-        found = search.found(ahead[:-1], float(ahead[-1]), None, across=tangent)
-    except NoPeriodicOrbitError:
+        found = search.found(ahead[:-1], float(ahead[-1]), None, across=tangent / sizes)
+    except (NoPeriodicOrbitError, NonFiniteStateError):
         return None
-    gone = np.append(found.y - orbit.y, found.period - orbit.period)
+    gone = np.append(found.y - orbit.y, found.period - orbit.period) / sizes
     return found if np.linalg.norm(gone) < 2 * length and gone @ tangent > 0 else None
 
 
 def _tangent(orbit: PeriodicOrbit, before: Array | None) -> Array:
-    """Return the direction of the family in (y, T), of length 1: on as before, or with growing energy."""
-    search = orbit.search
-    found = search.kernel(orbit.y, orbit.period)
-    sign = found[:-1] @ search.slope(orbit.y) if before is None else found @ before
+    """Return the direction of the family in (y, T), of length 1 in its scale: as a form before, or as energy grows."""
+    search, sizes = orbit.search, orbit.scale.both
+    found = search.kernel(orbit.y, orbit.period, orbit.scale)
+    way = found * sizes
+    sign = way[:-1] @ search.slope(orbit.y) if before is None else way @ before
     return found if sign >= 0 else -found
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from canon.flow.chaos.period_of_drive import check_period_of_drive
 from canon.flow.chaos.periodic_search import PeriodicOrbit, PeriodicSearch
 from canon.flow.request import Request
 from canon.flow.system.named_values import variables_of
@@ -43,7 +44,7 @@ def periodic_orbit(
 
     Newton's method solves Φ_T(y) = y + turns for y and T, with steps at right angles to the orbit, at constant energy,
     or at constant period. A system that depends on time keeps the period that is given, which is to be a multiple of
-    its own.
+    its own. Everything is measured by the trial orbit itself, so that units do not matter.
 
     Parameters
     ----------
@@ -72,7 +73,8 @@ def periodic_orbit(
     NoPeriodicOrbitError
         Newton's method does not come to an end; the error has the nearest it came.
     TypeError, ValueError, KeyError
-        As ``propagate``; the system is no Hamiltonian; the reversal is none of its symmetries.
+        As ``propagate``; the system is no Hamiltonian; the reversal is none of its symmetries; it depends on time, and
+        is not the same after the period.
 
     Examples
     --------
@@ -87,6 +89,9 @@ def periodic_orbit(
         samples=1,
     )  # fmt: skip
     search, start = _search(given, reversal, turns, fixed_period=fixed_period)
+    driven = not (search.equations.autonomous or search.equations.kicked)
+    if driven:
+        check_period_of_drive(search.equations, search.course(start, float(period)), float(period))
     wanted = energy if energy is not None else None if search.fixed_period else search.energy(start)
     if energy is not None and search.fixed_period:
         raise ValueError("the period is fixed, so that the energy follows: give one of them")
@@ -135,8 +140,8 @@ def _search(
         else task.states[0] + task.states[1]
     )
     if signs is not None:
-        search.check_reversal(start)
         start = np.where(signs < 0, 0.0, start)
+        search.check_reversal(start, float(given.t_span[1]))
     return search, start
 
 

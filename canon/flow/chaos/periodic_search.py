@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from canon.flow.chaos.floquet import FloquetMultipliers, floquet_multipliers, symplectic_inverse
+from canon.flow.chaos.orbit_scale import OrbitScale, orbit_scale
 from canon.flow.geometry.flow_jacobian import flow_jacobian
+from canon.flow.propagation import propagated
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.system.named_values import variables_of
 
@@ -25,6 +27,10 @@ __all__ = ["NoPeriodicOrbitError", "PeriodicOrbit", "PeriodicSearch"]
 
 _TRIES = 40
 _ROUNDING = 2.0**-52
+_LEFT = 1e3 * _ROUNDING
+"""What rounding leaves, in parts of a size."""
+
+_SAMPLES = 64
 _PERIODS = 2.0
 """The period found is not so many times longer or shorter than the guess."""
 _LEAST_ROW = 1e-2
@@ -68,6 +74,10 @@ class PeriodicOrbit:
         The monodromy matrix, the derivative of the flow over the period, shape (2n, 2n).
     multipliers
         The eigenvalues of M but for the two that are 1, their Krein signs and what they say of stability.
+    search
+        How it was found.
+    scale
+        The sizes of its variables, its period and its energy that it was measured by.
     """
 
     y: Array
@@ -77,6 +87,7 @@ class PeriodicOrbit:
     M: Array
     multipliers: FloquetMultipliers
     search: PeriodicSearch = field(repr=False)
+    scale: OrbitScale = field(repr=False)
 
     def __repr__(self) -> str:
         stable = {True: "stable", False: "unstable", None: "of unknown stability"}[self.multipliers.stable]
@@ -126,9 +137,10 @@ class PeriodicSearch:
         start = dict(zip(self.equations.inputs, (*y, 0.0), strict=True))
         return np.array([float(x) for x in self.equations.graph.evaluate(nodes, start)])
 
-    def flow(self, y: Array, time: float) -> tuple[Array, Array]:
-        """Return where a state is after a time, and the derivative by the state."""
+    def flow(self, y: Array, time: float, scale: OrbitScale) -> tuple[Array, Array]:
+        """Return where a state is after a time, and the derivative by the state, as a pure number."""
         r = self.request
+        largest = max(1.0, float(abs(y / scale.state).max()))
         found = flow_jacobian(
             r.system,
             (0.0, time),
@@ -137,10 +149,21 @@ class PeriodicSearch:
             step=r.step,
             tolerance=r.tolerance,
             parameters=r.parameters,
+            sizes=scale.state * largest,
         )
-        return found.y[:, -1], found.final
+        return found.y[:, -1], scale.bare(found.final)
 
-    def check_reversal(self, y: Array) -> None:
+    def course(self, y: Array, period: float) -> Array:
+        """Return states along a trial orbit, shape (2n, times): of half of one that is symmetric, and its image."""
+        time = period if self.signs is None else period / 2
+        half = propagated(replace(self.request, t_span=(0.0, time), y0=y, samples=_SAMPLES)).y
+        return half if self.signs is None else np.hstack([half, self.signs[:, np.newaxis] * half])
+
+    def scale(self, y: Array, period: float) -> OrbitScale:
+        """Return the sizes that a trial orbit is measured by."""
+        return orbit_scale(self.equations, self.course(y, period), self.shift, period)
+
+    def check_reversal(self, y: Array, period: float) -> None:
         """Refuse signs that do not reverse the motion: S f(S y) = −f(y) is to hold.
 
         Raises
@@ -149,9 +172,10 @@ class PeriodicSearch:
             They do not.
         """
         assert self.signs is not None
-        place = y + 0.1 * np.random.default_rng(20).standard_normal(len(y))
-        rates, mirrored = self.field(place), self.signs * self.field(self.signs * place)
-        if not abs(rates + mirrored).max() <= 1e-9 * max(abs(rates).max(), 1.0):
+        sizes = self.scale(y, period).state
+        place = y + 0.1 * sizes * np.random.default_rng(20).standard_normal(len(y))
+        rates, mirrored = self.field(place) / sizes, self.signs * self.field(self.signs * place) / sizes
+        if not abs(rates + mirrored).max() <= 1e-9 * abs(rates).max():
             changed = [
                 s.name for s, sign in zip(variables_of(self.equations), self.signs, strict=True) if sign < 0
             ]
@@ -162,17 +186,18 @@ class PeriodicSearch:
     def found(
         self, y: Array, period: float, energy: float | None, across: Array | None = None
     ) -> PeriodicOrbit:
-        """Return the periodic orbit from a guess: of an energy, or at right angles to a direction in (y, T) from it.
+        """Return the periodic orbit from a guess: of an energy, or across a step, which a form of (y, T) is 0 of.
 
         Raises
         ------
         NoPeriodicOrbitError
             Where Newton's method does not come to an end.
         """
-        guess = _Guess.of(self, y, period)
+        guess = _Guess.of(self, y, period, self.scale(y, period), energy)
         for _ in range(_TRIES):
-            step = self._newton_step(guess, energy, across)
-            following = self._improved(guess, step, period)
+            following = (
+                None if guess.exact else self._improved(guess, self._newton_step(guess, across), period)
+            )
             if following is None:
                 if guess.settled:
                     self._check_moving(guess)
@@ -180,9 +205,9 @@ class PeriodicSearch:
                 break
             guess = following
         raise NoPeriodicOrbitError(
-            f"no periodic orbit is found: the nearest arrives {guess.size:.2g} from its start after "
+            f"no periodic orbit is found: the nearest arrives {guess.defect:.2g} from its start after "
             f"{guess.period:.9g}; begin nearer to one, or at another period",
-            guess.y, guess.period, guess.size,
+            guess.y, guess.period, guess.defect,
         )  # fmt: skip
 
     def _check_moving(self, guess: _Guess) -> None:
@@ -193,12 +218,12 @@ class PeriodicSearch:
         NoPeriodicOrbitError
             The state is at rest but for rounding.
         """
-        way = abs(self.field(guess.y)).max() * guess.period
+        way = abs(self.field(guess.y) / guess.scale.state).max() * guess.period
         if self.equations.autonomous and way <= guess.rounding:
             raise NoPeriodicOrbitError(
                 f"the search ends at an equilibrium, {guess.y}, which closes after any time and is no orbit; begin "
                 "farther from it, with an energy or a period that an orbit has",
-                guess.y, guess.period, guess.size,
+                guess.y, guess.period, guess.defect,
             )  # fmt: skip
 
     def _improved(self, guess: _Guess, step: Array, first: float) -> _Guess | None:
@@ -209,10 +234,10 @@ class PeriodicSearch:
             if not 1 / _PERIODS < period / first < _PERIODS:
                 continue
             try:
-                following = _Guess.of(self, guess.y + part * step[:-1], period)
+                following = _Guess.of(self, guess.y + part * step[:-1], period, guess.scale, guess.energy)
             except (NonFiniteStateError, ValueError):
                 continue
-            if following.size < guess.size * (1 - 0.25 * part):
+            if following.missing < guess.missing * (1 - 0.25 * part):
                 return following
             if guess.settled:
                 return None
@@ -220,29 +245,33 @@ class PeriodicSearch:
 
     def orbit(self, guess: _Guess) -> PeriodicOrbit:
         """Return the orbit of a guess that closes."""
+        scale = guess.scale
         M = guess.M if self.signs is None else _whole(guess.M, self.signs)
-        slope = self.slope(guess.y) if self.equations.autonomous else None
+        slope = self.slope(guess.y) * scale.state / scale.energy if self.equations.autonomous else None
         return PeriodicOrbit(
-            guess.y, float(guess.period), self.energy(guess.y), guess.size, M, floquet_multipliers(M, slope), self
+            guess.y, float(guess.period), self.energy(guess.y), guess.defect, scale.dimensional(M),
+            floquet_multipliers(M, slope), self, scale,
         )  # fmt: skip
 
-    def _newton_step(self, guess: _Guess, energy: float | None, across: Array | None) -> Array:
+    def _newton_step(self, guess: _Guess, across: Array | None) -> Array:
         """Return the step of (y, T) by which what does not close would vanish to first order."""
+        scale = guess.scale
         rows, right = self.conditions(guess)
-        if energy is not None:
-            rows.append(np.append(self.slope(guess.y), 0.0))
-            right.append(energy - self.energy(guess.y))
+        if guess.energy is not None:
+            rows.append(np.append(self.slope(guess.y) * scale.state / scale.energy, 0.0))
+            right.append(-guess.energy_missed)
         if across is not None:
-            rows.append(across)
+            rows.append(across * scale.both)
             right.append(0.0)
-        return self.solved(np.array(rows), np.array(right))
+        return self.solved(np.array(rows), np.array(right)) * scale.both
 
     def conditions(self, guess: _Guess) -> tuple[list[Array], list[float]]:
-        """Return linear equations for (δy, δT): that the orbit closes, and that the step is across it."""
-        size = len(guess.y)
-        half = 1.0 if self.signs is None else 0.5
+        """Return linear equations for (δy, δT) in the orbit's scale: that it closes, and that the step is across it."""
+        size, scale = len(guess.y), guess.scale
+        part = 1.0 if self.signs is None else 0.5
         derivative = guess.M - (np.eye(size) if self.signs is None else 0.0)
-        rows = np.concatenate([derivative, half * self.field(guess.end)[:, np.newaxis]], axis=1)
+        arriving, starting = (self.field(y) * scale.period / scale.state for y in (guess.end, guess.y))
+        rows = np.concatenate([derivative, part * arriving[:, np.newaxis]], axis=1)
         right = -guess.missed
         if self.signs is not None:
             rows, right = rows[self.signs < 0], right[self.signs < 0]
@@ -251,13 +280,13 @@ class PeriodicSearch:
             equations.append(np.append(np.zeros(size), 1.0))
             values.append(0.0)
         elif self.signs is None:
-            equations.append(np.append(self.field(guess.y), 0.0))
+            equations.append(np.append(starting, 0.0))
             values.append(0.0)
         return equations, values
 
-    def kernel(self, y: Array, period: float) -> Array:
-        """Return the direction (δy, δT), of length 1, in which orbits go on closing to first order."""
-        rows, _ = self.conditions(_Guess.of(self, y, period))
+    def kernel(self, y: Array, period: float, scale: OrbitScale) -> Array:
+        """Return the direction (δy, δT), of length 1 in a scale, in which orbits go on closing to first order."""
+        rows, _ = self.conditions(_Guess.of(self, y, period, scale, None))
         free = self._free(len(y) + 1)
         found = np.zeros(len(y) + 1)
         found[free] = np.linalg.svd(np.array(rows)[:, free])[2][-1]
@@ -286,35 +315,72 @@ class PeriodicSearch:
 
 @dataclass(frozen=True, eq=False)
 class _Guess:
-    """A state and a period, where the motion arrives after it, or after half of it, and the derivative."""
+    """A state and a period, where the motion arrives after it, or after half of it, and the derivative.
+
+    Parameters
+    ----------
+    y, period
+        The start and the period.
+    scale
+        What all of it is measured by.
+    energy
+        The energy that is wanted, where one is.
+    end, M
+        Where it arrives, and the derivative in the scale.
+    missed, energy_missed
+        What does not close, and how far the energy is from what is wanted, in the scale.
+    energy_rounding
+        What rounding leaves of the energy, in the scale.
+    """
 
     y: Array
     period: float
+    scale: OrbitScale
+    energy: float | None
     end: Array
     M: Array
     missed: Array
+    energy_missed: float
+    energy_rounding: float
 
     @classmethod
-    def of(cls, search: PeriodicSearch, y: Array, period: float) -> _Guess:
-        if search.signs is None:
-            end, M = search.flow(y, period)
-            return cls(y, period, end, M, end - y - search.shift)
-        end, half = search.flow(y, period / 2)
-        return cls(y, period, end, half, np.where(search.signs < 0, end, 0.0))
+    def of(
+        cls, search: PeriodicSearch, y: Array, period: float, scale: OrbitScale, energy: float | None
+    ) -> _Guess:
+        off = rounding = 0.0
+        if energy is not None:
+            off = (search.energy(y) - energy) / scale.energy
+            rounding = _LEFT * (abs(energy) + abs(search.slope(y) * y).sum()) / scale.energy
+        end, M = search.flow(y, period if search.signs is None else period / 2, scale)
+        missed = end - y - search.shift if search.signs is None else np.where(search.signs < 0, end, 0.0)
+        return cls(y, period, scale, energy, end, M, missed / scale.state, off, rounding)
 
     @property
-    def size(self) -> float:
-        return float(abs(self.missed).max())
+    def defect(self) -> float:
+        """How far from its start it arrives, in the largest component."""
+        return float(abs(self.missed * self.scale.state).max())
+
+    @property
+    def missing(self) -> float:
+        """What is missing for the orbit that is wanted, in the scale."""
+        return max(float(abs(self.missed).max()), abs(self.energy_missed))
+
+    @property
+    def exact(self) -> bool:
+        """Whether what is missing is too little to be worth a step, which might shrink it for ever."""
+        return self.missing <= _ROUNDING
 
     @property
     def settled(self) -> bool:
-        """Whether what does not close is no more than rounding leaves, times what the motion makes of it."""
-        return self.size <= self.rounding
+        """Whether what is missing is no more than rounding leaves, times what the motion makes of it."""
+        closed = float(abs(self.missed).max()) <= self.rounding
+        return closed and abs(self.energy_missed) <= max(self.energy_rounding, self.rounding)
 
     @property
     def rounding(self) -> float:
-        """What rounding leaves, times what the motion makes of it."""
-        return 1e3 * _ROUNDING * max(1.0, float(abs(self.y).max())) * max(1.0, float(abs(self.M).max()))
+        """What rounding leaves, times what the motion makes of it, in the scale."""
+        size = float(abs(self.y / self.scale.state).max())
+        return _LEFT * max(1.0, size) * max(1.0, float(abs(self.M).max()))
 
 
 def _whole(half: Array, signs: Array) -> Array:

@@ -121,6 +121,7 @@ def flow_jacobian(
     parameters: Mapping[Symbol | str, Any] | None = None,
     samples: int | None = None,
     times: npt.ArrayLike | None = None,
+    sizes: npt.ArrayLike | None = None,
 ) -> FlowJacobian:
     """Return the Jacobian of the flow by the variational equations, with the method that carries the motion.
 
@@ -140,6 +141,10 @@ def flow_jacobian(
         symplectic; under constraints it holds for variations that keep them.
     y0
         One starting state, (q, p) of a Hamiltonian, shape (2n,).
+    sizes
+        How large variations of each variable are to begin, shape (2n,), where their units make them very different
+        from 1: an adaptive method's tolerance is a part of the largest number in the state. M is the derivative all
+        the same.
 
     Raises
     ------
@@ -174,19 +179,30 @@ def flow_jacobian(
         frame, values = (system, parameters or {}) if given is None else (given.system, given.parameters)
         return FlowJacobian(*transformed_jacobian(task, cast("HamiltonianSystem", frame), values))
     rows = slice(None) if moving is None else task.system.rows
+    units = _units(len(task.states[0]), rows, sizes)
     try:
         with np.errstate(over="ignore", invalid="ignore"):
-            t, motion, slopes, low = _with_variations(task, moving)
+            t, motion, slopes, low = _with_variations(task, moving, units)
     except NonFiniteStateError:
         t, motion, slopes, powers = jacobian_in_stretches(
-            task, lambda stretch: _with_variations(stretch, moving)[2][:, :, -1]
+            task, lambda stretch: _with_variations(stretch, moving, units)[2][:, :, -1]
         )
         found = slopes[rows][:, rows]
         return FlowJacobian(t, motion[rows], found, np.zeros_like(found), powers)
     return FlowJacobian(t, motion[rows], slopes[rows][:, rows], low[rows][:, rows])
 
 
-def _with_variations(task: Task, moving: MovingSystem | None) -> tuple[Array, Array, Array, Array]:
+def _units(count: int, rows: Any, sizes: npt.ArrayLike | None) -> Array:
+    """Return powers of two near the sizes, so that dividing by them rounds nothing."""
+    units = np.ones(count)
+    if sizes is not None:
+        units[rows] = 2.0 ** np.round(np.log2(np.asarray(sizes, dtype=np.float64)))
+    return units
+
+
+def _with_variations(
+    task: Task, moving: MovingSystem | None, units: Array
+) -> tuple[Array, Array, Array, Array]:
     """Return times, motion, Jacobians and what they are beyond doubles, of all that is integrated."""
     if task.method.solvable is not None or task.system.lie_poisson is not None:
         return compiled_jacobian(task)
@@ -198,21 +214,25 @@ def _with_variations(task: Task, moving: MovingSystem | None) -> tuple[Array, Ar
     made = replace(
         task,
         system=variational(whole, columns),
-        states=(_varied(task.states[0], orbits, columns), _varied(task.states[1], orbits, columns, unit=0.0)),
+        states=(
+            _varied(task.states[0], orbits, columns, units),
+            _varied(task.states[1], orbits, columns, np.zeros(size)),
+        ),
         single=False,
     )
     found = finished(recorded(made))
     motion, slopes = _parted(found.y, size, columns)
     _, low = _parted(found.carried, size, columns)
-    return found.t, motion, slopes, low
+    columns_of = units[np.newaxis, :, np.newaxis]
+    return found.t, motion, slopes / columns_of, low / columns_of
 
 
-def _varied(state: Array, orbits: int, columns: int, unit: float = 1.0) -> Array:
-    """Return starting states of shape (2n (1 + columns), orbits) with unit variations."""
+def _varied(state: Array, orbits: int, columns: int, units: Array) -> Array:
+    """Return starting states of shape (2n (1 + columns), orbits) with a variation of each variable by its unit."""
     n = len(state) // 2
-    units = unit * np.eye(2 * n)
+    each = np.diag(units)
     shape = (columns, 2, n, orbits)
-    varied = units.T.reshape(columns, 2 * n, 1) if orbits == 1 else units.reshape(1, 2 * n, orbits)
+    varied = each.reshape(columns, 2 * n, 1) if orbits == 1 else each.reshape(1, 2 * n, orbits)
     varied = varied.reshape(shape).transpose(1, 0, 2, 3).reshape(2, -1, orbits)
     own = np.broadcast_to(state, (2 * n, orbits)).reshape(2, n, orbits)
     return np.concatenate([own, varied], axis=1).reshape(-1, orbits)
