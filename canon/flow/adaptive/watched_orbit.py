@@ -225,6 +225,8 @@ class WatchedOrbit:
         following = passage(self.kinks, self.signs, k, at, self.forward)
         self.y = self.y + saltation(self.kinks, self.signs, following, k, at)
         self.signs, after = following.signs, None
+        if following.rests is not None:
+            self.y[following.rests] = 0.0
         if following.y is not None:
             self.y, after = following.y, following.y[self.system.rows]
         if following.words:

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.flow.kinked.regimes import HELD, Signs, flipped
+from canon.flow.kinked.rest import is_kept, nothing_moves
 from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 
 if TYPE_CHECKING:
@@ -47,11 +48,15 @@ _MOST_TOGETHER = 6
 
 @dataclass(frozen=True, eq=False)
 class Passage:
-    """What follows from a zero: the signs of the next regime, new momenta where H jumps, and what to call it."""
+    """What follows from a zero: the signs of the next regime, new momenta where H jumps, and what to call it.
+
+    ``rests`` is the component of the state that is 0 from here on, as what was left of it has no time to pass.
+    """
 
     signs: Signs
     y: Array | None = None
     words: str = ""
+    rests: int | None = None
 
 
 def vanishing(kinks: Kinks, signs: Signs, at: Place) -> list[int]:
@@ -120,7 +125,11 @@ def passage(kinks: Kinks, signs: Signs, k: int, at: Place, forward: int) -> Pass
         return _refracted(kinks, signs, beyond, k, jump, at)
     zero = sorted({k, *vanishing(kinks, signs, at), *vanishing(kinks, beyond, at)})
     following = _goes_on(kinks, beyond, zero, at, forward)
-    return Passage(following, words="sticks" if HELD in following else "")
+    if HELD not in following:
+        return Passage(following)
+    held = following.index(HELD)
+    rests = None if kinks.rate_at_rest(following, held) is None else kinks.row(held)
+    return Passage(following, words="sticks", rests=rests)
 
 
 def settled(kinks: Kinks, signs: Signs, known: set[int], at: Place) -> Signs:
@@ -140,6 +149,10 @@ def _goes_on(kinks: Kinks, signs: Signs, zero: Sequence[int], at: Place, forward
     """Return the regime that goes on from where some functions vanish; others take the signs they have."""
     if len(zero) > _MOST_TOGETHER:
         raise _lost(kinks, zero, at, f"{len(zero)} kinks are met at one instant")
+    if len(zero) == 1 and HELD not in signs and nothing_moves(kinks, signs, zero[0], at):
+        if not is_kept(kinks, zero[0], at, forward):
+            raise _lost(kinks, zero, at, "the motion is not determined: it may rest, or leave at any time")
+        return (*signs[: zero[0]], HELD, *signs[zero[0] + 1 :])
     found = {
         each for each in _candidates(kinks, signs, zero, at) if _consistent(kinks, each, zero, at, forward)
     }
