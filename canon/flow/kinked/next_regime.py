@@ -210,7 +210,7 @@ def _rate_on_both_sides(kinks: Kinks, k: int) -> int:
 def _only_touches(regime: Regime, g: int, rate: int, speed: float, at: Place) -> bool:
     """Tell whether a motion turns round within rounding of a zero: g goes to ġ²/(2 |g̈|) beyond it."""
     turn = at.value(regime.system, regime.rate(rate))
-    return speed**2 <= 2 * abs(turn) * _TOUCH * at.size(regime.system, g)
+    return math.isfinite(turn) and speed**2 <= 2 * abs(turn) * _TOUCH * at.size(regime.system, g)
 
 
 def _rates(kinks: Kinks, signs: Signs, at: Place) -> list[float]:
