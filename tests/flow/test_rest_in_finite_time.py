@@ -43,6 +43,24 @@ def test_a_body_stops_while_another_swings_on(how):
 
 
 @pytest.mark.parametrize("how", METHODS)
+def test_a_body_stays_at_rest_while_another_turns_round_in_its_drag(how):
+    system = pulled(drag(x.dot, HALF), drag(y.dot, HALF) / 9, V=y**2 / 2)
+    final = propagate(system, (0, 5), [0, 1, 1, 0], **how).final
+    true = solve_ivp(
+        lambda t, s: [s[1], -s[0] - np.sign(s[1]) * np.sqrt(abs(s[1])) / 9],
+        (0, 5), [1, 0], "Radau", rtol=1e-11, atol=1e-13,
+    )  # fmt: skip
+    assert np.allclose(final, [2 / 3, true.y[0, -1], 0, true.y[1, -1]], atol=1e-8)
+
+
+@pytest.mark.parametrize("how", METHODS)
+def test_two_bodies_that_come_to_rest_are_told(how):
+    with pytest.raises(NonFiniteStateError, match="several kinks hold the motion at once") as told:
+        propagate(pulled(drag(x.dot, HALF), drag(y.dot, HALF)), (0, 5), [0, 0, 1, 2], **how)
+    assert told.value.time == pytest.approx(2 * np.sqrt(2), abs=1e-4)
+
+
+@pytest.mark.parametrize("how", METHODS)
 @pytest.mark.parametrize(("power", "span"), [(HALF, 5), (Rational(3, 2), 5), (Rational(3, 2), -5)])
 def test_what_rests_stays_at_rest(power, span, how):
     assert (propagate(pulled(drag(x.dot, power)), (0, span), [2, 0], **how).final == [2, 0]).all()

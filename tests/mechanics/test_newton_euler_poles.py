@@ -8,9 +8,9 @@ from scipy.integrate import solve_ivp
 from sympy import asin, cos, sin, sqrt
 
 from canon import coordinates, parameters, propagate
-from canon.mechanics.algebra.overdetermined import solve_overdetermined
 from canon.mechanics.lagrange.body import Particle, PlanarBody
 from canon.mechanics.lagrange.newton_euler import Load, NewtonEuler, joint, weights
+from canon.mechanics.lagrange.overdetermined import solve_overdetermined
 
 m, l, g, R, M = parameters("m l g R M", positive=True)
 mu = parameters("mu")

@@ -244,8 +244,9 @@ class KinkedOrbit:
             self.regimes.taylor_events,
             self.regimes.taylor_events.forward,
         )
-        if HELD not in self.signs:
-            self._put_on_zero(kinks.regime(self.signs).functions[k])
+        ended = kinks.regime(self.signs).functions
+        if k in ended:
+            self._put_on_zero(ended[k])
             self.at_kink = self.state.copy(), self._now()
         at = self._place()
         following = passage(kinks, self.signs, k, at, forward)

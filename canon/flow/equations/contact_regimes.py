@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from sympy import Dummy
 
-from canon.flow.equations.impacts_at_once import check_impacts_at_once
+from canon.flow.equations.constrained.impacts_at_once import check_impacts_at_once
 from canon.flow.run.non_finite_state import PiledUpError, time_and_state
 from canon.flow.run.observables_along import AccuracyWarning, frames_of_canon
 

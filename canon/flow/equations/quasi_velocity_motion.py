@@ -15,10 +15,10 @@ from sympy import Expr
 
 from canon.expression.graph.graph import Graph
 from canon.expression.symbols.symbol import velocity
+from canon.flow.equations.constrained.solved_balances import solved_balances
 from canon.flow.equations.first_order_motion import FirstOrderMotion, Residual
 from canon.flow.equations.lagrangian_motion import values_at_start
 from canon.flow.equations.linear_equations import SingularAtStartError, independent_rows, solved_from_start
-from canon.flow.equations.solved_balances import solved_balances
 from canon.mechanics.algebra.substitution import entry, exchanged
 from canon.mechanics.lagrange.appell import cross
 from canon.mechanics.lagrange.body import RigidBody

@@ -115,6 +115,8 @@ def passage(kinks: Kinks, signs: Signs, k: int, at: Place, forward: int) -> Pass
     if HELD in signs:
         held = signs.index(HELD)
         back = {side: (*signs[:held], side, *signs[held + 1 :]) for side in (1, -1)}
+        if k != held and nothing_moves(kinks, back[1], held, at):
+            return _beside_rest(kinks, back[1], k, held, at, forward)
         if k != held:  # another function vanishes meanwhile: look again from one side
             return Passage(_goes_on(kinks, flipped(back[1], k), [k, held], at, forward), words="slips")
         return Passage(_goes_on(kinks, back[1], [k], at, forward), words="slips")
@@ -130,6 +132,14 @@ def passage(kinks: Kinks, signs: Signs, k: int, at: Place, forward: int) -> Pass
     held = following.index(HELD)
     rests = None if kinks.rate_at_rest(following, held) is None else kinks.row(held)
     return Passage(following, words="sticks", rests=rests)
+
+
+def _beside_rest(kinks: Kinks, signs: Signs, k: int, held: int, at: Place, forward: int) -> Passage:
+    """Return what follows from a zero while a variable rests for ever; ``signs`` have a side for it."""
+    following = _goes_on(kinks, flipped(signs, k), [k], at, forward)
+    if HELD in following:
+        raise _lost(kinks, [k, held], at, "several kinks hold the motion at once")
+    return Passage((*following[:held], HELD, *following[held + 1 :]))
 
 
 def settled(kinks: Kinks, signs: Signs, known: set[int], at: Place) -> Signs:

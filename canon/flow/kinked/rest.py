@@ -1,7 +1,8 @@
 """Rest under a drag that falls slower than the speed, as √|v|: it is reached in a finite time, and kept.
 
 There the rate has no Taylor series, and its slope is infinite: equations do not say that v = 0 is the only motion from
-there. It is where the drag leads to rest from both sides; where it leads away a body may start at any time.
+there. It is where the drag leads to rest from both sides; where it leads away a body may start at any time. Rest is
+told where what is left of the speed is rounding, which may be a while before: |v|^(9/10) takes its time.
 """
 
 from __future__ import annotations

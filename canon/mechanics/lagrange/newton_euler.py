@@ -18,10 +18,10 @@ from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.all_vanish import all_vanish
 from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain_all
 from canon.mechanics.algebra.linear import eliminate, solve
-from canon.mechanics.algebra.overdetermined import solve_overdetermined, symmetric_product
 from canon.mechanics.algebra.substitution import as_tuple, entry, exchanged
 from canon.mechanics.lagrange.appell import cross
 from canon.mechanics.lagrange.body import Particle, RigidBody
+from canon.mechanics.lagrange.overdetermined import solve_overdetermined, symmetric_product
 from canon.mechanics.lagrange.quasi_velocity import Kinematics
 
 if TYPE_CHECKING:
