@@ -167,6 +167,8 @@ def folded_power(base: Fraction, power: Fraction) -> Fraction | None:
     """Return base**power where that is a rational number of modest size."""
     if not base and power < 0:
         raise ZeroDivisionError("the expression divides by zero: an exact 0 is raised to a negative power")
+    if base == 1 or (not base and power > 0):
+        return base
     if power.denominator == 2 and base >= 0:
         roots = Fraction(isqrt(base.numerator), isqrt(base.denominator))
         if roots * roots != base:

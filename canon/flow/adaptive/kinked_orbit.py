@@ -52,6 +52,11 @@ _AT_ONCE = 2.0**-44
 _PILE = 1000
 """So many kinks within a rounding of time pile up."""
 
+_NOT_SMOOTH = (
+    "the motion comes to rest, where its force is not smooth enough to go on: stop it by an event of the speed, "
+    "Event(speed, action='stop'), or end the span before"
+)
+
 _ZERO = 2.0**-40
 """In parts of a function's size: an event that vanishes at the same place as a kink."""
 
@@ -158,6 +163,7 @@ class KinkedOrbit:
         for _ in range(2):
             own = self.regimes.of(self.signs)
             self._leave_weak_zero(left)
+            self._check_rates()
             orbit, pieces = self._placed(own), len(own.orbit.pieces)
             if orbit.free is None:  # nothing ends this regime
                 return own, 0, []
@@ -170,6 +176,14 @@ class KinkedOrbit:
             self.state[:], self.dtime = before, clock
             self.signs = tuple(-s if k in wrong else s for k, s in enumerate(self.signs))
         raise self._piled_up()
+
+    def _check_rates(self) -> None:
+        """Make sure that the rates have values where a regime with roots begins."""
+        assert self.signs is not None
+        regime = self.regimes.kinks.regime(self.signs)
+        rates = [*regime.system.velocity, *regime.system.force]
+        if regime.weak and not np.isfinite(self._place().values(regime.system, rates)).all():
+            raise self._error(_NOT_SMOOTH)
 
     def _on_wrong_side(self) -> list[int]:
         """Return the switching functions that have not the sign of the regime."""
@@ -230,8 +244,9 @@ class KinkedOrbit:
             self.regimes.taylor_events,
             self.regimes.taylor_events.forward,
         )
-        if HELD not in self.signs:
-            self._put_on_zero(kinks.regime(self.signs).functions[k])
+        ended = kinks.regime(self.signs).functions
+        if k in ended:
+            self._put_on_zero(ended[k])
             self.at_kink = self.state.copy(), self._now()
         at = self._place()
         following = passage(kinks, self.signs, k, at, forward)
@@ -239,6 +254,8 @@ class KinkedOrbit:
             change = saltation(kinks, self.signs, following, k, at).tolist()
             self.state[:] = self.state + np.array([own.number(Fraction(x) / own.unit) for x in change])
         self.signs = following.signs
+        if following.rests is not None:
+            self.state[following.rests] = own.number(Fraction(0))
         after = None
         if following.y is not None:
             self.state[:] = [own.number(Fraction(x) / own.unit) for x in following.y.tolist()]
@@ -297,6 +314,8 @@ class KinkedOrbit:
             return False
         before, clock, rates = self.state.copy(), self.dtime, [*system.velocity, *system.force]
         first = np.nan_to_num(at.values(system, rates))  # rounding may have it a little beyond
+        if not first.any():
+            raise self._error(_NOT_SMOOTH)
         size = float(abs(before.astype(np.float64)).max()) * float(own.size) or 1.0
         ahead = next((float(abs(t - self._now())) for t in left if t != self._now()), math.inf)
         length = min(_LONGEST_EULER * size / float(abs(first).max()), ahead / 2) * own.forward

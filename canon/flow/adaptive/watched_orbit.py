@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -209,9 +209,11 @@ class WatchedOrbit:
             self._pass(watch.kinks[zero.which], zero.which)
         else:
             self._meet(event, rising=zero.rising)
-        for other in self._watch().events:
+        sticks = event is None and HELD in self.signs
+        arrived = self._arrived(watch.kinks[zero.which], kept) if sticks else None
+        for other in (watch if sticks else self._watch()).events:
             if not self.stopped and other.event is not (event and event.event):
-                self._meet_too(other)
+                self._meet_too(other, arrived)
         self._sides = self._sides_now(None if event is None or event.jump is not None else zero)
 
     def _pass(self, k: int, which: int) -> None:
@@ -225,6 +227,8 @@ class WatchedOrbit:
         following = passage(self.kinks, self.signs, k, at, self.forward)
         self.y = self.y + saltation(self.kinks, self.signs, following, k, at)
         self.signs, after = following.signs, None
+        if following.rests is not None:
+            self.y[following.rests] = 0.0
         if following.y is not None:
             self.y, after = following.y, following.y[self.system.rows]
         if following.words:
@@ -263,10 +267,23 @@ class WatchedOrbit:
                 f"{at_once}: events pile up there; stop the motion before", self.t, self.y[self.system.rows]
             )
 
-    def _meet_too(self, event: PreparedEvent) -> None:
-        """Meet another event if its function vanishes at the same place."""
+    def _arrived(self, k: int, kept: Array) -> Place:
+        """Return the place beside a zero that the motion sticks on, on the side from which it came from a state.
+
+        On the zero itself a drag √|v| leaves no rate.
+        """
+        assert self.kinks is not None
         at = self._place()
-        value, rate = at.values(self.system, [event.value, event.rate])
+        if self.kinks.rate_at_rest(self.signs, k) is None:
+            return at
+        row, y = self.kinks.row(k), self.y.copy()
+        y[row] = math.copysign(_AT_ONCE * (np.abs(y).max() or 1.0), kept[row])
+        return replace(at, y=y)
+
+    def _meet_too(self, event: PreparedEvent, arrived: Place | None) -> None:
+        """Meet another event if its function vanishes at the same place, by its rate where the motion arrived."""
+        at = self._place()
+        value, rate = at.value(self.system, event.value), (arrived or at).value(self.system, event.rate)
         rising = rate * self.forward > 0
         late = 2 * np.spacing(abs(self.t)) * abs(rate)
         near = abs(value) <= _AT_ONCE * at.size(self.system, event.value) + late

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from sympy import Dummy
 
+from canon.flow.equations.constrained.impacts_at_once import check_impacts_at_once
 from canon.flow.run.non_finite_state import PiledUpError, time_and_state
 from canon.flow.run.observables_along import AccuracyWarning, frames_of_canon
 
@@ -91,6 +92,8 @@ def check_contacts(moving: MovingSystem, samples: Samples) -> None:
     ------
     ArithmeticError
         One does: events were missed, as steps are too large.
+    NonFiniteStateError
+        Contacts are met at one instant and push at one another.
 
     Warns
     -----
@@ -100,6 +103,7 @@ def check_contacts(moving: MovingSystem, samples: Samples) -> None:
     contacts = moving.contacts
     if contacts is None:
         return
+    check_impacts_at_once(moving, samples)
     equations = moving.equations
     values = dict(zip(equations.inputs, (*samples.y[:, :, 0], samples.t), strict=True))
     graph, state = equations.graph, (*equations.q, *equations.p)

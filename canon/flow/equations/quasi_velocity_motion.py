@@ -7,6 +7,7 @@ bodies are moved as time says, what moves them does work too, and the rate of T 
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -14,6 +15,7 @@ from sympy import Expr
 
 from canon.expression.graph.graph import Graph
 from canon.expression.symbols.symbol import velocity
+from canon.flow.equations.constrained.solved_balances import solved_balances
 from canon.flow.equations.first_order_motion import FirstOrderMotion, Residual
 from canon.flow.equations.lagrangian_motion import values_at_start
 from canon.flow.equations.linear_equations import SingularAtStartError, independent_rows, solved_from_start
@@ -23,7 +25,7 @@ from canon.mechanics.lagrange.body import RigidBody
 from canon.mechanics.lagrange.quasi_velocity import Kinematics
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Generator, Iterator, Mapping, Sequence
 
     from sympy import Symbol
 
@@ -57,8 +59,15 @@ def quasi_motion(given: QuasiMotion, start: Mapping[Symbol, float]) -> FirstOrde
     letter = _letter(kinematics)
     return FirstOrderMotion(
         "motion in quasi-velocities", graph, kinematics.q, kinematics.u, letter, kinematics.t, (*q_dot, *rates),
-        named=named,
+        named=named, residuals=tuple(_kept(graph, given)),
     )  # fmt: skip
+
+
+def _kept(graph: Graph, given: QuasiMotion) -> Iterator[Residual]:
+    """Yield what vanishes along a motion that starts on the constraints."""
+    yield from (Residual(graph.from_sympy(f), "position") for f in given.holonomic)
+    rates = (*map(given.kinematics.rate, given.holonomic), *given.nonholonomic)
+    yield from (Residual(graph.from_sympy(g), "rate") for g in rates)
 
 
 def appell_motion(given: GibbsAppell, start: Mapping[Symbol, float]) -> FirstOrderMotion:
@@ -101,8 +110,7 @@ def appell_motion(given: GibbsAppell, start: Mapping[Symbol, float]) -> FirstOrd
 def newton_euler_motion(given: NewtonEuler, start: Mapping[Symbol, float]) -> FirstOrderMotion:
     """Return the first-order equations of bodies by Newton and Euler, the reactions known by their symbols.
 
-    Of more balances than unknowns, those that are independent at the start determine the motion; the others are
-    looked at along it.
+    Of more balances than unknowns, those that depend on the others at the start are looked at along the motion.
 
     Parameters
     ----------
@@ -126,7 +134,8 @@ def newton_euler_motion(given: NewtonEuler, start: Mapping[Symbol, float]) -> Fi
             f"{len(kept)} independent balances at the start for {', '.join(map(str, unknown))}: too many reactions, a "
             "load is missing, or the bodies stand in a singular place"
         )
-    found = _solved(graph, unknown, [nodes[i] for i in kept], start, symmetric=False)
+    with _singular_in_words(unknown):
+        found = solved_balances(graph, given, nodes, start)
     kinematics, v, n = Kinematics(q, t=given.t), tuple(map(velocity, q)), len(q)
     through = {graph.symbol(s): node for s, node in zip(unknown, found, strict=True)}
     rest = graph.substitute([node for i, node in enumerate(nodes) if i not in kept], through)
@@ -161,10 +170,17 @@ def _solved(
     still = {graph.symbol(s): graph.zero for s in unknown}
     right = [graph.negative(e) for e in graph.substitute(nodes, still)]
     values = values_at_start(graph, [a for row in matrix for a in row], start, "the mass matrix")
-    try:
+    with _singular_in_words(unknown):
         return solved_from_start(graph, matrix, right, values.reshape(len(nodes), -1), symmetric=symmetric)
+
+
+@contextmanager
+def _singular_in_words(unknown: Sequence[Symbol]) -> Generator[None]:
+    """Say which unknowns a matrix that is singular at the start leaves open."""
+    try:
+        yield
     except SingularAtStartError as singular:
-        held = [str(s) for s, x in zip(unknown, singular.direction, strict=True) if abs(x) > 1e-6]
+        held = [str(s) for s, x in zip(unknown, singular.direction, strict=False) if abs(x) > 1e-6]
         raise ValueError(
             f"the mass matrix is singular at the start along {', '.join(held)}: the equations do not determine them "
             "there. Start elsewhere, or use other coordinates"

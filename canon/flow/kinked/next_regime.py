@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.flow.kinked.regimes import HELD, Signs, flipped
+from canon.flow.kinked.rest import is_kept, nothing_moves
 from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 
 if TYPE_CHECKING:
@@ -47,11 +48,15 @@ _MOST_TOGETHER = 6
 
 @dataclass(frozen=True, eq=False)
 class Passage:
-    """What follows from a zero: the signs of the next regime, new momenta where H jumps, and what to call it."""
+    """What follows from a zero: the signs of the next regime, new momenta where H jumps, and what to call it.
+
+    ``rests`` is the component of the state that is 0 from here on, as what was left of it has no time to pass.
+    """
 
     signs: Signs
     y: Array | None = None
     words: str = ""
+    rests: int | None = None
 
 
 def vanishing(kinks: Kinks, signs: Signs, at: Place) -> list[int]:
@@ -110,6 +115,8 @@ def passage(kinks: Kinks, signs: Signs, k: int, at: Place, forward: int) -> Pass
     if HELD in signs:
         held = signs.index(HELD)
         back = {side: (*signs[:held], side, *signs[held + 1 :]) for side in (1, -1)}
+        if k != held and nothing_moves(kinks, back[1], held, at):
+            return _beside_rest(kinks, back[1], k, held, at, forward)
         if k != held:  # another function vanishes meanwhile: look again from one side
             return Passage(_goes_on(kinks, flipped(back[1], k), [k, held], at, forward), words="slips")
         return Passage(_goes_on(kinks, back[1], [k], at, forward), words="slips")
@@ -120,7 +127,19 @@ def passage(kinks: Kinks, signs: Signs, k: int, at: Place, forward: int) -> Pass
         return _refracted(kinks, signs, beyond, k, jump, at)
     zero = sorted({k, *vanishing(kinks, signs, at), *vanishing(kinks, beyond, at)})
     following = _goes_on(kinks, beyond, zero, at, forward)
-    return Passage(following, words="sticks" if HELD in following else "")
+    if HELD not in following:
+        return Passage(following)
+    held = following.index(HELD)
+    rests = None if kinks.rate_at_rest(following, held) is None else kinks.row(held)
+    return Passage(following, words="sticks", rests=rests)
+
+
+def _beside_rest(kinks: Kinks, signs: Signs, k: int, held: int, at: Place, forward: int) -> Passage:
+    """Return what follows from a zero while a variable rests for ever; ``signs`` have a side for it."""
+    following = _goes_on(kinks, flipped(signs, k), [k], at, forward)
+    if HELD in following:
+        raise _lost(kinks, [k, held], at, "several kinks hold the motion at once")
+    return Passage((*following[:held], HELD, *following[held + 1 :]))
 
 
 def settled(kinks: Kinks, signs: Signs, known: set[int], at: Place) -> Signs:
@@ -140,6 +159,10 @@ def _goes_on(kinks: Kinks, signs: Signs, zero: Sequence[int], at: Place, forward
     """Return the regime that goes on from where some functions vanish; others take the signs they have."""
     if len(zero) > _MOST_TOGETHER:
         raise _lost(kinks, zero, at, f"{len(zero)} kinks are met at one instant")
+    if len(zero) == 1 and HELD not in signs and nothing_moves(kinks, signs, zero[0], at):
+        if not is_kept(kinks, zero[0], at, forward):
+            raise _lost(kinks, zero, at, "the motion is not determined: it may rest, or leave at any time")
+        return (*signs[: zero[0]], HELD, *signs[zero[0] + 1 :])
     found = {
         each for each in _candidates(kinks, signs, zero, at) if _consistent(kinks, each, zero, at, forward)
     }
@@ -197,7 +220,7 @@ def _rate_on_both_sides(kinks: Kinks, k: int) -> int:
 def _only_touches(regime: Regime, g: int, rate: int, speed: float, at: Place) -> bool:
     """Tell whether a motion turns round within rounding of a zero: g goes to ġ²/(2 |g̈|) beyond it."""
     turn = at.value(regime.system, regime.rate(rate))
-    return speed**2 <= 2 * abs(turn) * _TOUCH * at.size(regime.system, g)
+    return math.isfinite(turn) and speed**2 <= 2 * abs(turn) * _TOUCH * at.size(regime.system, g)
 
 
 def _rates(kinks: Kinks, signs: Signs, at: Place) -> list[float]:

@@ -61,7 +61,9 @@ class Place:
         found = np.abs(self.values(system, [*rates, *parts]))
         here, speeds = np.abs(self.y), np.nan_to_num(found[:n], posinf=0.0)
         soon = speeds * (here.max() / speeds.max()) if speeds.any() else speeds
-        sizes = [*found[n : 2 * n] * np.maximum(here, soon), found[2 * n] * abs(self.t), *found[2 * n + 1 :]]
+        with np.errstate(invalid="ignore"):  # an infinite slope by nothing counts for nothing
+            terms = found[n : 2 * n] * np.maximum(here, soon)
+        sizes = [*terms, found[2 * n] * abs(self.t), *found[2 * n + 1 :]]
         return float(np.nan_to_num(sizes, nan=0.0, posinf=0.0).sum())
 
 

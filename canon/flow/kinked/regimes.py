@@ -175,7 +175,9 @@ class Kinks:
         side does not lead there any more.
         """
         k, graph = signs.index(HELD), self.system.graph
-        above, below = (self.regime((*signs[:k], side, *signs[k + 1 :])) for side in (1, -1))
+        if self.rate_at_rest(signs, k) is not None:
+            return self._resting(signs, k)
+        above, below = self._sides(signs, k)
         zero = self.folded(above.signs, [self.functions[k]])[0]
         down, up = self._ways_apart(above, below, zero)
         share = graph.power(graph.add((up, graph.negative(down))), -1)
@@ -198,13 +200,49 @@ class Kinks:
         others = {j: node for j, node in above.functions.items() if j != k}
         return Regime(signs, system, others)
 
+    def rate_at_rest(self, signs: Signs, k: int) -> int | None:
+        """Return the rate of a variable where it is 0, of one whose rate has a root there and does not jump.
+
+        So is the speed of a body under a drag √|v|. None of other switching functions.
+        """
+        graph, g = self.system.graph, self.functions[k]
+        above, below = self._sides(signs, k)
+        if graph.nodes[g].kind != "symbol" or k not in above.weak | below.weak:
+            return None
+        try:
+            down, up = (graph.substitute([side.rate(g)], {g: graph.zero})[0] for side in (above, below))
+        except ZeroDivisionError:  # a force that is infinite at rest
+            return None
+        return down if down == up else None
+
+    def _resting(self, signs: Signs, k: int) -> Regime:
+        """Return the motion of the other variables while one stays 0."""
+        graph, g = self.system.graph, self.functions[k]
+        above, _ = self._sides(signs, k)
+        rates = graph.substitute(self._rates(above.system), {g: graph.zero})
+        rates[self.row(k)] = graph.zero
+        half = len(self.system.velocity)
+        system = replace(above.system, written=above.system.moving_by(rates[:half], rates[half:]))
+        return Regime(signs, system, {j: node for j, node in above.functions.items() if j != k})
+
+    def row(self, k: int) -> int:
+        """Return which component of the state a switching function is that is a variable."""
+        (symbol,) = self.system.graph.symbols(self.functions[k])
+        return self.system.inputs.index(symbol)
+
+    def _sides(self, signs: Signs, k: int) -> tuple[Regime, Regime]:
+        above, below = (self.regime((*signs[:k], side, *signs[k + 1 :])) for side in (1, -1))
+        return above, below
+
     def ways_out(self, signs: Signs) -> dict[int, int]:
         """Return the functions whose zeros end a motion that stays on a zero, by the sign of the side it leaves to.
 
-        Each is positive while its side leads to the zero.
+        Each is positive while its side leads to the zero. Nothing ends the rest of what nothing moves.
         """
         k, graph = signs.index(HELD), self.system.graph
-        above, below = (self.regime((*signs[:k], side, *signs[k + 1 :])) for side in (1, -1))
+        if self.rate_at_rest(signs, k) is not None:
+            return {}
+        above, below = self._sides(signs, k)
         zero = self.folded(above.signs, [self.functions[k]])[0]
         down, up = self._ways_apart(above, below, zero)
         return {1: graph.negative(down), -1: up}

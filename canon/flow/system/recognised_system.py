@@ -130,7 +130,8 @@ def _known(system: Any) -> RecognisedSystem:
         return replace(found, unneeded=_of_bodies(system.bodies))
     if isinstance(system, QuasiMotion):
         kinematics = system.kinematics
-        said, state = (*kinematics.q_dot, *system.equations), (*kinematics.q, *kinematics.u)
+        said = (*kinematics.q_dot, *system.equations, *system.holonomic, *system.nonholonomic)
+        state = (*kinematics.q, *kinematics.u)
         return _with(state, kinematics.t, said, lambda start: quasi_motion(system, start), kinematics.u_dot)
     if isinstance(system, NewtonEuler):
         state = (*system.q, *map(velocity, system.q))

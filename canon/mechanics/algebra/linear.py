@@ -20,7 +20,15 @@ from canon.proof.kinks import vanishes_off_kinks
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["Elimination", "SingularMatrixError", "eliminate", "is_regular", "solve", "solve_affine"]
+__all__ = [
+    "Elimination",
+    "SingularMatrixError",
+    "eliminate",
+    "is_plainly_nonzero",
+    "is_regular",
+    "solve",
+    "solve_affine",
+]
 
 
 class SingularMatrixError(ValueError):
@@ -227,7 +235,7 @@ def _pivot_row(
     candidates = [i for i in range(top, len(rows)) if rows[i][column] != 0]
     for i in sorted(candidates, key=lambda i: (_complexity(rows[i][column]) if by_size else 0, i)):
         entry = rows[i][column]
-        if _plainly_nonzero(entry):
+        if is_plainly_nonzero(entry):
             return i
         verdict = vanishes_off_kinks(entry, domain)
         if verdict.fails:
@@ -243,11 +251,19 @@ def _pivot_row(
 
 
 def _complexity(entry: Expr) -> int:
-    return 0 if _plainly_nonzero(entry) else size(entry)
+    return 0 if is_plainly_nonzero(entry) else size(entry)
 
 
-def _plainly_nonzero(entry: Expr) -> bool:
-    """Whether a product of nonzero numbers and of powers of positive or nonzero symbols."""
+def is_plainly_nonzero(entry: Expr) -> bool:
+    """Tell whether an entry is a product of nonzero numbers and of powers of positive or nonzero symbols.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> m, x = symbols("m", positive=True), symbols("x", real=True)
+    >>> is_plainly_nonzero(m / 2), is_plainly_nonzero(m * x)
+    (True, False)
+    """
     factors = sp.Mul.make_args(entry)
     return all(
         factor != 0

@@ -13,14 +13,15 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.cached_property import cached_property
-from canon.expression.symbols.symbol import acceleration, time
+from canon.expression.symbols.symbol import acceleration, time, velocity
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.all_vanish import all_vanish
 from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain_all
-from canon.mechanics.algebra.linear import eliminate
+from canon.mechanics.algebra.linear import eliminate, solve
 from canon.mechanics.algebra.substitution import as_tuple, entry, exchanged
 from canon.mechanics.lagrange.appell import cross
 from canon.mechanics.lagrange.body import Particle, RigidBody
+from canon.mechanics.lagrange.overdetermined import solve_overdetermined, symmetric_product
 from canon.mechanics.lagrange.quasi_velocity import Kinematics
 
 if TYPE_CHECKING:
@@ -191,7 +192,51 @@ class NewtonEuler:
                 "the bodies cannot move like that under these loads: "
                 f"{consistent.residual} = 0 is left over. Add the reactions that hold them"
             )
-        return tuple(row[0] for row in reduced.back_substituted())
+        return self._solved(matrix, right)
+
+    def _solved(self, matrix: sp.Matrix, right: sp.Matrix) -> tuple[Expr, ...]:
+        """Return the unknowns, without poles where the bodies have none."""
+        if not self.ideal.holds:
+            return solve_overdetermined(matrix, right.flat(), self.weights)
+        n, J, every = len(self.q), self.partial_velocities, range(matrix.rows)
+        turning = matrix.extract(every, range(n))
+        holding = matrix.extract(every, range(n, matrix.cols))
+        masses = symmetric_product(J, turning.tolist(), [sp.S.One] * len(J))
+        found = solve(masses, sp.Matrix(J).T * right, name="the mass matrix")
+        return (*found.flat(), *solve_overdetermined(holding, (right - turning * found).flat(), self.weights))
+
+    @cached_property
+    def partial_velocities(self) -> tuple[tuple[Expr, ...], ...]:
+        """The slopes ∂/∂q̇ of what each balance is the rate of: velocities, and angular velocities."""
+        kinematics = Kinematics(self.q, t=self.t)
+        moving = (
+            rate
+            for body in self.bodies
+            for rate in (*map(kinematics.rate, body.r), *body.angular_velocity(kinematics))
+        )
+        return tuple(tuple(rate.diff(velocity(s)) for s in self.q) for rate in moving)
+
+    @cached_property
+    def ideal(self) -> Verdict:
+        """Whether the reactions do no virtual work, so that the accelerations follow without them."""
+        slopes = zip(*self.partial_velocities, strict=True)
+        claims = [
+            (f"the virtual work of {force} along {s}", sp.Add(*(a * e.diff(force) for a, e in pairs)))
+            for s, column in zip(self.q, slopes, strict=True)
+            for force in self.reactions
+            for pairs in [list(zip(column, self.balances, strict=True))]
+        ]
+        return all_vanish(claims, "the reactions do no virtual work")
+
+    @cached_property
+    def weights(self) -> tuple[Expr, ...]:
+        """1/m of each of Newton's balances and 1/tr I of each of Euler's, 1 of a body without mass."""
+        sizes = (
+            size
+            for body in self.bodies
+            for size in (*[body.m] * len(body.r), *[body.inertia.trace()] * body.inertia.rows)
+        )
+        return tuple(sp.S.One if size == 0 else 1 / size for size in sizes)
 
     def agrees_with(self, equations: Sequence[Expr], domain: Domain | None = None) -> Verdict:
         """Tell whether equations of motion (Lagrange's, Appell's) hold for the accelerations found here."""

@@ -21,8 +21,9 @@ from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.lagrange.quasi_velocity import Kinematics
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
+    from sympy import Symbol
     from sympy.physics.mechanics import KanesMethod, LagrangesMethod
 
 __all__ = ["QuasiMotion", "from_sympy_mechanics"]
@@ -38,10 +39,14 @@ class QuasiMotion:
         q̇ as a function of q, u, t.
     equations
         As many equations as quasi-velocities, each expression = 0, affine in u̇.
+    holonomic, nonholonomic
+        Constraints f(q, t) = 0 and g(q, u, t) = 0 that the equations keep, where the start is on them.
     """
 
     kinematics: Kinematics
     equations: tuple[Expr, ...]
+    holonomic: tuple[Expr, ...] = ()
+    nonholonomic: tuple[Expr, ...] = ()
 
     @cached_property
     def quasi_accelerations(self) -> tuple[Expr, ...]:
@@ -143,4 +148,13 @@ def _of_kanes_method(method: KanesMethod) -> QuasiMotion:
         )
         for i in range(len(u_dot))
     )
-    return QuasiMotion(kinematics, tuple(equations))
+    return QuasiMotion(kinematics, tuple(equations), *_constraints_of_kane(method, names))
+
+
+def _constraints_of_kane(method: KanesMethod, names: Sequence[Symbol]) -> Iterator[tuple[Expr, ...]]:
+    """Yield the constraints on configurations, then those on speeds, K u + k = 0."""
+    kept: dict[str, Any] = vars(method)  # SymPy shows them nowhere else
+    K, k = kept["_k_nh"], kept["_f_nh"]
+    on_speeds = K * sp.Matrix(cast("Any", method.u)) + k if K else sp.Matrix()
+    for constraints in (sp.Matrix(kept["_f_h"]), on_speeds):
+        yield tuple(plain(f, names) for f in constraints.flat())

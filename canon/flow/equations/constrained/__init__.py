@@ -1,1 +1,1 @@
-"""Constrained motion as methods take it that keep the constraints themselves."""
+"""Constrained motion: as methods take it that keep the constraints themselves, by reactions, and impacts at once."""
