@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.cached_property import cached_property
+from canon.flow.adaptive.component_sizes import time_and_sizes
 from canon.flow.adaptive.zeros_in_step import Zero, zeros_in_step
 from canon.flow.kinked.next_regime import passage, signs_at_start
 from canon.flow.kinked.place import Place
@@ -34,6 +35,9 @@ _NEWTON = 6
 
 _AT_ONCE = 2.0**-40
 """In parts of a function's size: one that vanishes where another event is met."""
+
+_ORDER, _SURE = 8, 0.01
+"""The method's order, and in tolerances what its first step misses if the time scale of the motion is as it seems."""
 
 _PILE = 1000
 """So many events at one instant pile up."""
@@ -67,7 +71,7 @@ class WatchedOrbit:
     system, kinks, events
         The equations, their kinks, and the person's events.
     tolerances
-        The relative and the absolute one.
+        The relative one, and which part of the sizes of components the absolute one is.
     forward
         1 where time runs forward, −1 where it runs back.
     longest
@@ -96,6 +100,7 @@ class WatchedOrbit:
         if self.kinks is not None:
             self.signs = signs_at_start(self.kinks, self._place(), self.forward)
         self._sides = self._sides_now(rounding=0.0)  # as the other engines take a start
+        self._sizes = abs(self.y)
 
     @property
     def compile_seconds(self) -> float:
@@ -106,13 +111,15 @@ class WatchedOrbit:
         before, kept = float(integrator.t), integrator.y.copy()
         integrator.max_step = self.longest(before, kept)
         message = integrator.step()
+        self._sizes = np.fmax(self._sizes, abs(integrator.y))
+        integrator.atol = self.tolerances[1] * self._sizes
         self.steps += 1
         if integrator.status == "failed" or not np.isfinite(integrator.y).all():
             raise _lost(before, kept[self.system.rows], message)
 
     def go(self, times: Array, states: Array, progress: Callable[[float], None]) -> None:
         """Put the states at the times after the first into their columns; ``sampled`` says how many are there."""
-        in_a_row, size = 0, None
+        in_a_row, size = 0, self._measured(float(times[-1]))
         while self.sampled < len(times) and not self.stopped:
             begun, integrator = self.t, self._integrator(self.t, self.y, float(times[-1]), size)
             met, before, kept = None, self.t, self.y
@@ -132,6 +139,18 @@ class WatchedOrbit:
             if in_a_row > _PILE:
                 lost = self._error("events pile up there; stop the motion before")
                 raise PiledUpError(str(lost), lost.time, lost.state)
+
+    def _measured(self, end: float) -> float:
+        """Find the sizes of the state's components, and return the length of the first step."""
+        rate, (relative, _) = self._watch().rate.call, self.tolerances
+
+        def counted(t: float, y: Array) -> Array:
+            self.evaluations += 1
+            return rate(t, y)
+
+        found = time_and_sizes(counted, self.t, self.y, end - self.t, relative)
+        self._sizes = found.sizes
+        return found.time * (_SURE * relative) ** (1 / _ORDER)
 
     def _sample(self, times: Array, states: Array, interpolant: _Interpolant, until: float) -> None:
         """Put the states at the times of a step into their columns."""
@@ -322,13 +341,19 @@ class WatchedOrbit:
             folded,
         )
 
-    def _integrator(self, t: float, y: Array, end: float, first: float | None) -> Any:
+    def _integrator(self, t: float, y: Array, end: float, first: float) -> Any:
         from scipy import integrate
 
         relative, absolute = self.tolerances
-        first = None if first is None else min(first, abs(end - t))
+        self._sizes = np.fmax(self._sizes, abs(y))
         return integrate.DOP853(
-            self._watch().rate.call, t, y, end, rtol=relative, atol=absolute, first_step=first or None
+            self._watch().rate.call,
+            t,
+            y,
+            end,
+            rtol=relative,
+            atol=absolute * self._sizes,
+            first_step=min(first, abs(end - t)) or None,
         )
 
     def _place(self) -> Place:
