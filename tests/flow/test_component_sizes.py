@@ -1,4 +1,4 @@
-"""DOP853's tolerance is a relative one in whatever units, and components that are zero or all rounding don't stop it."""
+"""DOP853's tolerance is a relative one in whatever units, and components that are zero or rounding don't stop it."""
 
 import numpy as np
 import pytest
@@ -33,7 +33,9 @@ def test_an_amplitude_in_any_unit(size):
     assert found.steps == propagate(QUARTIC, (0, 10), [1, 0], parameters={a: 1}, method="DOP853").steps
 
 
-@pytest.mark.parametrize(("radius", "mass", "pull"), [(1, 1, 1), (1e-10, 9.1e-31, 253.0), (1.5e11, 6e24, 1.3e20)])
+@pytest.mark.parametrize(
+    ("radius", "mass", "pull"), [(1, 1, 1), (1e-10, 9.1e-31, 253.0), (1.5e11, 6e24, 1.3e20)]
+)
 def test_a_circle_in_units_of_atoms_and_of_planets(radius, mass, pull):
     speed = (pull / radius) ** 0.5
     start = [radius, 0, 0, mass * speed]
@@ -59,7 +61,12 @@ def test_a_mass_held_by_symmetry_costs_no_steps(middle, size):
     found = propagate(chain(3), (0, 20), [size, middle, -size, 0, 0, 0], method="DOP853")
     moved = propagate(chain(3), (0, 20), [size, size / 3, -size, 0, 0, 0], method="DOP853")
     exact = solve_ivp(
-        lambda _, q: [q[1], -2 * q[0] - 2 * q[0] ** 3], (0, 20), [size, 0], method="DOP853", rtol=1e-13, atol=1e-15
+        lambda _, q: [q[1], -2 * q[0] - 2 * q[0] ** 3],
+        (0, 20),
+        [size, 0],
+        method="DOP853",
+        rtol=1e-13,
+        atol=1e-15,
     ).y[:, -1]
     assert found.final[[0, 3]] == pytest.approx(exact, abs=1e-9)
     assert found.steps < 2 * moved.steps

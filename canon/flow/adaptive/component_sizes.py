@@ -68,9 +68,7 @@ def time_and_sizes(
     return TimeAndSizes(abs(time), np.where(sizes == 0, 1.0, sizes))
 
 
-def _resolved(
-    rate: Callable[[float, Array], Array], t: float, y: Array, span: float
-) -> tuple[float, Array]:
+def _resolved(rate: Callable[[float, Array], Array], t: float, y: Array, span: float) -> tuple[float, Array]:
     """Return the longest of the span, its half, … in which RK4 makes sense, and the sizes of components there."""
     time = span
     for _ in range(_HALVINGS):
@@ -94,9 +92,7 @@ def _stages(rate: Callable[[float, Array], Array], t: float, y: Array, h: float)
     return np.array([first, second, third, rate(t + h, y + h * third)])
 
 
-def _handed_on(
-    rate: Callable[[float, Array], Array], t: float, y: Array, time: float, sizes: Array
-) -> Array:
+def _handed_on(rate: Callable[[float, Array], Array], t: float, y: Array, time: float, sizes: Array) -> Array:
     """Return the sizes that components of such sizes would give one another in a time, were nothing to cancel."""
     first = rate(t, y).copy()
     # Of irrational parts no two are alike, so that no symmetry is left.

@@ -10,7 +10,7 @@ import numpy as np
 
 from canon.cached_property import cached_property
 from canon.flow.adaptive.component_sizes import time_and_sizes
-from canon.flow.adaptive.zeros_in_step import Zero, zeros_in_step
+from canon.flow.adaptive.zeros_in_step import TooFastError, Zero, zeros_in_step
 from canon.flow.kinked.next_regime import passage, signs_at_start
 from canon.flow.kinked.place import Place
 from canon.flow.kinked.regimes import HELD, Regime
@@ -39,6 +39,9 @@ _AT_ONCE = 2.0**-40
 _ORDER, _SURE = 8, 0.01
 """The method's order, and in tolerances what its first step misses if the time scale of the motion is as it seems."""
 
+_ROUNDING = 2.0**-44
+"""In parts of a function's size, what rounding and the interpolant's may make of one that vanishes."""
+
 _PILE = 1000
 """So many events at one instant pile up."""
 
@@ -53,13 +56,14 @@ class Watch:
     regime: Regime
     rate: CompiledNodes
     values: CompiledNodes
+    functions: tuple[int, ...]
     kinks: tuple[int, ...]
     events: tuple[PreparedEvent, ...]
 
     @property
     def count(self) -> int:
         """How many functions are looked for."""
-        return len(self.kinks) + len(self.events)
+        return len(self.functions)
 
 
 @dataclass(eq=False)
@@ -168,15 +172,7 @@ class WatchedOrbit:
         watch, sides = self._watch(), self._sides
         zeros: Sequence[Zero] = ()
         if watch.count:
-            zeros, sides = zeros_in_step(
-                lambda t: watch.values.call(t, interpolant(t) if t != integrator.t else integrator.y)[
-                    : watch.count
-                ],
-                before,
-                float(integrator.t),
-                self._sides,
-                len(watch.kinks),
-            )
+            zeros, sides = self._zeros(before, integrator, interpolant)
         for zero in zeros:
             event = self._event(zero)
             if event is not None and not event.event.counts(zero.rising):
@@ -187,6 +183,28 @@ class WatchedOrbit:
             self.crossings.append(Crossing(event.event, t, y[self.system.rows], zero.rising))
         self.t, self.y, self._sides = float(integrator.t), integrator.y.copy(), sides
         return None
+
+    def _zeros(self, before: float, integrator: Any, interpolant: Any) -> tuple[list[Zero], Array]:
+        watch, end = self._watch(), float(integrator.t)
+
+        def values(t: float) -> Array:
+            return watch.values.call(t, interpolant(t) if t != end else integrator.y)
+
+        try:
+            return zeros_in_step(values, before, end, self._sides, self._roundings, len(watch.kinks))
+        except TooFastError as error:
+            event = self._event(Zero(before, error.which, rising=True))
+            what = "a kink's function" if event is None else str(event.event)
+            raise self._error(
+                f"{what} changes too often to be followed in one step, which goes to t = {end:.9g}: give a smaller "
+                "max_step"
+            ) from None
+
+    def _roundings(self) -> Array:
+        """Return how large, of the functions that are looked for, rounding makes those that vanish here."""
+        watch, at = self._watch(), self._place()
+        system = watch.regime.system
+        return np.array([_ROUNDING * at.size(system, node) for node in watch.functions])
 
     def _event(self, zero: Zero) -> PreparedEvent | None:
         """Return the person's event that a zero belongs to; None for a kink."""
@@ -337,6 +355,7 @@ class WatchedOrbit:
             regime,
             compiled_nodes(self.system, smooth.rates),
             compiled_nodes(self.system, [*functions, *rates]),
+            tuple(functions),
             tuple(k for k, _ in looked),
             folded,
         )
@@ -346,7 +365,8 @@ class WatchedOrbit:
 
         relative, absolute = self.tolerances
         self._sizes = np.fmax(self._sizes, abs(y))
-        return integrate.DOP853(
+        dop853: Any = integrate.DOP853  # its stub has no array of tolerances
+        return dop853(
             self._watch().rate.call,
             t,
             y,
