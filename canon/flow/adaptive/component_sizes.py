@@ -25,6 +25,9 @@ _RESOLVED = 2.0**-3
 _TELLING = 2.0**-32
 """In parts of the largest of its half of the state, what a component is to begin with to tell of the time scale."""
 
+_AT_ZERO, _REACHED = 2.0**-20, 0.125
+"""A component that begins as so small a part of what it comes to has so much of that for its size."""
+
 _HALVINGS = 200
 
 _NUDGE = 2.0**-20
@@ -79,7 +82,7 @@ def _resolved(rate: Callable[[float, Array], Array], t: float, y: Array, span: f
             telling = begun > _TELLING * _largest_of_half(begun)
             away = abs(time * (stages[0] - 4 * stages[1] + 2 * stages[2] + stages[3]) / 6)
             if (away <= _RESOLVED * sizes)[telling].all():
-                return time, sizes
+                return time, np.where(abs(y) > _AT_ZERO * sizes, abs(y), _REACHED * sizes)
         time /= 2
     return time, abs(y)
 
