@@ -273,7 +273,7 @@ class WatchedOrbit:
     def _meet(self, event: PreparedEvent, *, rising: bool) -> None:
         y, after = self.y[self.system.rows], None
         if event.jump is not None:
-            self._check_again(event)
+            self._check_again(event, rising=rising)
             self.y = np.array(self._place().values(self.system, event.jump))
             if not np.isfinite(self.y).all():
                 raise self._error("the new state of an event is not finite")
@@ -283,7 +283,7 @@ class WatchedOrbit:
         self.crossings.append(Crossing(event.event, self.t, y, rising, after))
         self.stopped = event.event.action == "stop"
 
-    def _check_again(self, event: PreparedEvent) -> None:
+    def _check_again(self, event: PreparedEvent, *, rising: bool) -> None:
         """Make sure that an event that changed the state is not met again at the same instant.
 
         Raises
@@ -291,8 +291,11 @@ class WatchedOrbit:
         PiledUpError
             It is.
         """
-        latest = [met for met in self.crossings[-9:] if met.event is event.event and met.t == self.t]
-        if latest and not event.switches:
+        apart = [abs(met.t - self.t) for met in self.crossings[-9:] if met.event is event.event]
+        (rate,) = self._place().values(self.system, [event.rate])
+        turned = rate * self.forward * (1 if rising else -1) < 0
+        near = _AT_ONCE * abs(self.t) if turned else 0.0
+        if apart and min(apart) <= near and not event.switches:
             at_once = (
                 f"{event.event} is met again at once at {time_and_state(self.t, self.y[self.system.rows])}"
             )
