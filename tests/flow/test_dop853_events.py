@@ -5,7 +5,7 @@ import pytest
 import sympy as sp
 
 from canon import Event, Hamiltonian, Lagrangian, coordinates, propagate, time
-from canon.flow.run.non_finite_state import PiledUpError
+from canon.flow.run.non_finite_state import NonFiniteStateError, PiledUpError
 
 x = coordinates("x")
 p = x.momentum
@@ -83,7 +83,65 @@ def test_a_passing_where_one_run_ends_and_the_next_begins_is_counted_once():
         assert len(met) <= 8
 
 
-def test_a_ball_that_bounces_ever_lower_does_not_fall_through_the_floor():
+@pytest.mark.parametrize("start", [[1, 0], [1, 0.5], [0.7, 0.1], [2, 0.3], [3, 1]])
+def test_a_ball_that_bounces_ever_lower_does_not_fall_through_the_floor(start):
     ball = Lagrangian(x.dot**2 / 2 - x, [x])
-    with pytest.raises(PiledUpError, match=r"met again at once at t = 4\.24264.* where \(x, x_dot\) = "):
-        propagate(ball, (0, 10), [1, 0], method="DOP853", events=[Event(x, -1, {x.dot: -x.dot / 2})])
+    end = start[1] + 3 * (start[1] ** 2 + 2 * start[0]) ** 0.5
+    words = rf"met again at once at t = {end:.9g} where \(x, x_dot\) = "
+    with pytest.raises(PiledUpError, match=words):
+        propagate(ball, (0, 10), start, method="DOP853", events=[Event(x, -1, {x.dot: -x.dot / 2})])
+
+
+@pytest.mark.parametrize("force", [0, 1])
+@pytest.mark.parametrize("way", [1, -1])
+def test_events_that_are_faster_than_the_steps(force, way):
+    free = Hamiltonian(p**2 / 2 + force * x, [x], [p])
+    span = 0.5 * way, 50.5 * way
+    found = propagate(free, span, [0.3, 0.7], method="DOP853", events=[Event(sp.sin(sp.pi * time))])
+    assert [met.t for met in found.events] == pytest.approx([way * k for k in range(1, 51)], abs=1e-12)
+    fast = propagate(free, span, [0.3, 0.7], method="DOP853", events=[Event(sp.sin(sp.pi * time * 17 / 2))])
+    assert [met.t for met in fast.events] == pytest.approx([way * k / 8.5 for k in range(5, 430)], abs=1e-12)
+
+
+def test_pairs_of_crossings_within_a_step_beside_one_another():
+    """sin(π t) is beyond 0.999 for a short while in every second turn."""
+    free = Hamiltonian(p**2 / 2, [x], [p])
+    found = propagate(
+        free, (0, 50), [0, 1], method="DOP853", events=[Event(sp.sin(sp.pi * x) - sp.Rational(999, 1000))]
+    )
+    half = np.arccos(0.999) / np.pi
+    assert [met.t for met in found.events] == pytest.approx(
+        [2 * k + 0.5 + side * half for k in range(25) for side in (-1, 1)], abs=1e-9
+    )
+
+
+def test_events_that_can_not_be_followed_are_told():
+    free = Hamiltonian(p**2 / 2, [x], [p])
+    with pytest.raises(NonFiniteStateError, match=r"sin\(1000000\*t\) = 0 changes too often .* max_step"):
+        propagate(free, (0, 50), [0, 1], method="DOP853", events=[Event(sp.sin(10**6 * time))])
+    few = propagate(
+        free, (0, 0.001), [0, 1], method="DOP853", events=[Event(sp.sin(10**6 * time))], max_step=1e-4
+    )
+    assert len(few.events) == 318
+
+
+def test_events_of_what_is_rounding_cost_little():
+    """The third coordinate of a plane vanishes all along, and so does the momentum of two alike, but for rounding."""
+    y, z = coordinates("y z")
+    H = (p**2 + y.momentum**2 + z.momentum**2) / 2 - 1 / sp.sqrt(x**2 + y**2 + z**2)
+    kepler = Hamiltonian(H, [x, y, z], [p, y.momentum, z.momentum])
+    start = [1, 0.1, 0, 0, 1, 0]
+    found = propagate(kepler, (0, 20), start, method="DOP853", events=[Event(z)])
+    assert found.final == pytest.approx(propagate(kepler, (0, 20), start).final, abs=1e-9)
+    assert found.events == ()
+    spring = (p**2 + y.momentum**2) / 2 + sp.cos(x - y) / 3
+    pair = Hamiltonian(spring, [x, y], [p, y.momentum])
+    told = propagate(pair, (0, 20), [0.3, 0.1, 0.7, -0.7], method="DOP853", events=[Event(p + y.momentum)])
+    assert told.steps == propagate(pair, (0, 20), [0.3, 0.1, 0.7, -0.7], method="DOP853").steps
+
+
+def test_a_pole_and_a_jump_within_long_steps():
+    free = Hamiltonian(p**2 / 2, [x], [p])
+    found = propagate(free, (0, 30), [-0.3, 1], method="DOP853", events=[Event(sp.tan(x))])
+    assert [met.t for met in found.events] == pytest.approx(0.3 + np.pi * np.arange(10), abs=1e-12)
+    assert all(met.rising for met in found.events)

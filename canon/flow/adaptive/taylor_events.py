@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.flow.adaptive.state_unit import is_finite
+from canon.flow.kinked.place import Place
 from canon.flow.run.event import Crossing
 from canon.flow.run.non_finite_state import NonFiniteStateError, PiledUpError, time_and_state
 from canon.flow.run.observables_along import values_in
@@ -31,6 +32,9 @@ _ROUNDING = 2.0**-9
 _SEEN = 2.0**-20
 """In parts of its largest value, where a function's sign at a sample is known for certain."""
 
+_OFF = 2.0**-44
+"""In parts of its size, where it is known for certain that a function has left zero."""
+
 _SAME_TIME = 2.0**-44
 """Times this near to one another, as a part of the time and a slice's length, are those of one zero."""
 
@@ -48,6 +52,8 @@ class TaylorEvents:
         1 where time runs forward, −1 where it runs back.
     unit
         What the integrator's numbers are parts of.
+    earlier
+        Crossings of the run that this one goes on from.
 
     Raises
     ------
@@ -64,7 +70,9 @@ class TaylorEvents:
         *,
         forward: int,
         unit: Fraction = _ONE,
+        earlier: Sequence[Crossing] = (),
     ) -> None:
+        self.earlier = earlier
         self.unit, self.size = unit, number(unit)
         self.system, self.events, self.number, self.forward = system, events, number, forward
         self.recorded = [event for event in events if event.event.action == "record"]
@@ -106,6 +114,42 @@ class TaylorEvents:
     def at_zero(self, t: float, high: Array, low: Array) -> bool:
         """Return whether the motion starts where some event's function is exactly zero."""
         return any(self._value(event, t, high[:, 0], low[:, 0]) == 0 for event in self.events)
+
+    def is_off(self, begin: tuple[float, Any], here: tuple[float, Any]) -> bool:
+        """Return whether every event that was zero at a time and state has left zero for certain at others.
+
+        Nor is there anything to wait for where another event is passed meanwhile.
+        """
+        for event in self.events:
+            before = self._value(event, begin[0], *self._parts(begin[1]))
+            now = self._value(event, here[0], *self._parts(here[1]))
+            if before * now < 0:
+                return True
+            if before == 0 and abs(now) <= _OFF * self._place(*here).size(self.system, event.value):
+                return False
+        return True
+
+    def passed_at(self, t: Any, state: Any, span: Any) -> PreparedEvent | None:
+        """Meet an event that ends or changes the motion and was passed unseen where a slice ended; None without one.
+
+        heyoka looks for zeros before the end of a step, and rounding may have the next begin beyond this one.
+        """
+        now, parts = float(t), self._parts(state)
+        near = (abs(now) + abs(float(span))) * _SAME_TIME
+        for event in self.terminal:
+            value, rate = (self._value(event, now, *parts, rate=rate) for rate in (False, True))
+            way = self.forward * rate
+            told = any(
+                met.event is event.event and abs(met.t - now) <= 2 * near
+                for met in (*self.earlier, *self.crossings)
+            )
+            if told or not abs(value) < abs(rate) * near or value * way < 0:
+                continue
+            if event.event.counts(way > 0):
+                self.new_state = None if event.jump is None else self._changed(event.jump, now, state)
+                self._record(event, now, state, 1 if rate > 0 else -1, self.new_state)
+                return event
+        return None
 
     def check_domain(self, t: Array, y: Array) -> None:
         """Make sure that every event's function is finite along samples y of shape (2n, times), and was seen to vanish.
@@ -227,7 +271,7 @@ class TaylorEvents:
                 y,
             )
 
-    def settle(self, t: Any, state: Any, span: Any, met: int, earlier: Sequence[Crossing]) -> None:
+    def settle(self, t: Any, state: Any, span: Any, met: int) -> None:
         """Count the zeros on which a slice begins once each.
 
         A step that ends on a zero has it in neither or in both of the slices that meet there, as rounding will.
@@ -238,8 +282,6 @@ class TaylorEvents:
             Where the slice began, and its length.
         met
             How many crossings were known before it.
-        earlier
-            Crossings of the run that this one goes on from.
         """
         begun, near = float(t), (abs(float(t)) + abs(float(span))) * _SAME_TIME
         parts = self._parts(state)
@@ -248,7 +290,7 @@ class TaylorEvents:
             if not abs(self._value(event, begun, *parts)) < abs(rate) * near:
                 continue
             rising = rate * self.forward > 0
-            known = [c for c in (*earlier, *self.crossings) if abs(c.t - begun) <= 2 * near]
+            known = [c for c in (*self.earlier, *self.crossings) if abs(c.t - begun) <= 2 * near]
             same = [c for c in known if c.event is event.event and c.rising == rising]
             self.crossings[met:] = [
                 c for c in self.crossings[met:] if not any(c is other for other in same[1:])
@@ -329,6 +371,9 @@ class TaylorEvents:
         moved = None if after is None else (after * self.size).astype(np.float64)[rows]
         y = (state * self.size).astype(np.float64)[rows]
         self.crossings.append(Crossing(event.event, t, y, sign * self.forward > 0, moved))
+
+    def _place(self, t: float, state: Any) -> Place:
+        return Place(self.wide, t, *self._parts(state))
 
     def _parts(self, state: Any) -> tuple[Array, Array]:
         whole = state * self.size

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from canon.array import Array
     from canon.flow.method.method import Taylor
-    from canon.flow.run.event import Crossing, PreparedEvent
+    from canon.flow.run.event import PreparedEvent
     from canon.flow.run.sampling_plan import Plan
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
@@ -80,12 +80,15 @@ def taylor_motion(
         grid[k - first] = number(plan.exact[k])
     t0, span = plan.last(first), grid[-1] - grid[0]
     unit = state_unit(system, states[0] if so_far is None else so_far.y[:, 0], plan)
-    taylor_events = TaylorEvents(system, events, precision, number, forward=plan.forward, unit=unit)
+    earlier = () if so_far is None else so_far.crossings
+    taylor_events = TaylorEvents(
+        system, events, precision, number, forward=plan.forward, unit=unit, earlier=earlier
+    )
     kinks, smooth = kinks_of(system), list[TaylorOrbit]()
     if kinks is None:
         smooth = orbits_of(system, states, t0, method, number, taylor_events, span, max_step)
         if so_far is None and events and taylor_events.at_zero(float(plan.instants[0]), *states):
-            smooth[0].leave([], (), dense=dense)
+            smooth[0].leave_start(dense=dense)
         orbits: list[TaylorOrbit] | list[KinkedOrbit] = smooth
     else:
         orbits = kinked_orbits_of(kinks, states, t0, method, number, taylor_events, span, precision, max_step)
@@ -98,7 +101,6 @@ def taylor_motion(
         taylor_events,
         [numbers_of(states, number)[np.newaxis]],
         [orbit.beyond for orbit in orbits],
-        () if so_far is None else so_far.crossings,
     )
     run.follow(grid, plan, first, progress, system.rows, dense=dense)
     found = np.concatenate(run.rows).transpose(1, 0, 2)
@@ -146,7 +148,6 @@ class _TaylorRun:
     taylor_events: TaylorEvents
     rows: list[Any]
     beyond: list[tuple[Any, Any]]
-    earlier: tuple[Crossing, ...] = ()
     steps: int = 0
     seconds: float = 0.0
     stopped: bool = False
@@ -167,7 +168,9 @@ class _TaylorRun:
             try:
                 for begin, end in plan.slices(first):
                     part = grid[begin - first : end - first + 1]
-                    state = self.orbits[0].beyond[0] / self.taylor_events.size
+                    state, within = self.orbits[0].beyond[0] / self.taylor_events.size, begin > 0
+                    if within:
+                        self._begin_slice(part, state)
                     made = list(
                         each_in_turn(lambda orbit, part=part: orbit.advance(part, dense=dense), self.orbits)
                     )
@@ -175,14 +178,20 @@ class _TaylorRun:
                         if each.outcome is not None:
                             raise orbit.lost(each.outcome, rows)
                     self._add(made)
-                    if begin > 0 and isinstance(self.orbits[0], TaylorOrbit):
-                        self.taylor_events.settle(part[0], state, part[-1] - part[0], met, self.earlier)
+                    if within and isinstance(self.orbits[0], TaylorOrbit):
+                        self.taylor_events.settle(part[0], state, part[-1] - part[0], met)
                     met = len(self.taylor_events.crossings)
                     if self.stopped:
                         return
                     progress(end / (len(plan.instants) - 1))
             except KeyboardInterrupt:
                 del self.taylor_events.crossings[met:]
+
+    def _begin_slice(self, part: Any, state: Any) -> None:
+        """Let an orbit meet the event on which the slice before this one ended."""
+        orbit = self.orbits[0]
+        if isinstance(orbit, TaylorOrbit) and self.taylor_events.terminal:
+            orbit.passed = self.taylor_events.passed_at(part[0], state, part[-1] - part[0])
 
     def settle_ends(self, t: Array, *, begins: bool) -> None:
         """Count zeros at the ends of these sample times once; at the first where the motion begins there."""

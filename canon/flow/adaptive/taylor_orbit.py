@@ -42,6 +42,9 @@ _SYSTEMS = 64
 _SMALL_PART = 2.0**-30
 """What part of a step is passed without events after one that changed the state."""
 
+_LARGE_PART = 2.0**-6
+"""Less than this is passed from a start at which an event's function vanishes with its rate."""
+
 
 @dataclass(frozen=True)
 class Slice:
@@ -59,7 +62,8 @@ class TaylorOrbit:
     """One orbit on its way: heyoka's integrator, and one without events to leave their zeros with.
 
     ``held`` keeps the steps from passing over localised terms; ``tested`` says that series may have gaps, so that every
-    step is tested; ``new`` tells that the next step is the first from a state that was given.
+    step is tested; ``new`` tells that the next step is the first from a state that was given; ``passed`` is an event to
+    meet before the next step.
     """
 
     integrator: Any
@@ -70,6 +74,7 @@ class TaylorOrbit:
     longest: Any = None
     tested: bool = False
     new: bool = True
+    passed: PreparedEvent | None = None
     pieces: list[Any] = field(default_factory=list[Any])
     safe: tuple[Any, Any] = (None, None)
 
@@ -115,14 +120,16 @@ class TaylorOrbit:
         started, rows, steps, left = time.thread_time(), list[Any](), 0, grid[1:]
         failure, stopped = None, False
         while left:
-            steps_taken, found, outcome = self._towards(self.integrator, left, dense=dense)
-            steps += steps_taken
-            rows += found
-            left = left[len(found) :]
-            event = self.taylor_events.event_of(outcome)
+            event, self.passed = self.passed, None
             if event is None:
-                failure = outcome
-                break
+                steps_taken, found, outcome = self._towards(self.integrator, left, dense=dense)
+                steps += steps_taken
+                rows += found
+                left = left[len(found) :]
+                event = self.taylor_events.event_of(outcome)
+                if event is None:
+                    failure = outcome
+                    break
             handled = [event] if event.jump is None else self._at_the_same_time(event)
             if handled[-1].event.action == "stop":
                 rows.append(self.integrator.state.copy())
@@ -162,8 +169,23 @@ class TaylorOrbit:
             if found.event.action == "stop":
                 return handled
 
+    def leave_start(self, *, dense: bool) -> None:
+        """Move off the zero of an event at which the motion starts, which it may only touch there."""
+        free, own = self.free, self.integrator
+        before, clock, begin = own.state.copy(), own.dtime, float(own.time)
+        free.state[:], free.dtime = before, clock
+        _, natural = free.step(self.span)
+        kind, part = type(natural), _SMALL_PART
+        while part < _LARGE_PART:
+            free.state[:], free.dtime = before, clock
+            free.propagate_until(own.time + natural * kind(part))
+            if self.taylor_events.is_off((begin, before), (float(free.time), free.state)):
+                break
+            part *= 2
+        self.leave([], (), dense=dense, part=part if part < _LARGE_PART else _SMALL_PART)
+
     def leave(
-        self, left: list[Any], events: Sequence[PreparedEvent], *, dense: bool
+        self, left: list[Any], events: Sequence[PreparedEvent], *, dense: bool, part: float = _SMALL_PART
     ) -> tuple[int, list[Any]]:
         """Move off an event's zero, by a small part of a step that looks for no events.
 
@@ -174,7 +196,7 @@ class TaylorOrbit:
         before, clock = own.state.copy(), own.dtime
         _, natural = free.step(self.span)
         free.state[:], free.dtime = before, clock
-        end = own.time + natural * type(natural)(_SMALL_PART)
+        end = own.time + natural * type(natural)(part)
         at_once = [before for t in left if t == own.time]
         near = [t for t in left if t != own.time and (t - end) * self.taylor_events.forward < 0]
         steps, found, _ = self._towards(free, [*near, end], dense=dense)

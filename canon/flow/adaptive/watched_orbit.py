@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.cached_property import cached_property
-from canon.flow.adaptive.zeros_in_step import Zero, zeros_in_step
+from canon.flow.adaptive.component_sizes import time_and_sizes
+from canon.flow.adaptive.zeros_in_step import TooFastError, Zero, zeros_in_step
 from canon.flow.kinked.next_regime import passage, signs_at_start
 from canon.flow.kinked.place import Place
 from canon.flow.kinked.regimes import HELD, Regime
@@ -35,6 +36,12 @@ _NEWTON = 6
 _AT_ONCE = 2.0**-40
 """In parts of a function's size: one that vanishes where another event is met."""
 
+_ORDER, _SURE = 8, 0.01
+"""The method's order, and in tolerances what its first step misses if the time scale of the motion is as it seems."""
+
+_ROUNDING = 2.0**-44
+"""In parts of a function's size, what rounding and the interpolant's may make of one that vanishes."""
+
 _PILE = 1000
 """So many events at one instant pile up."""
 
@@ -49,13 +56,14 @@ class Watch:
     regime: Regime
     rate: CompiledNodes
     values: CompiledNodes
+    functions: tuple[int, ...]
     kinks: tuple[int, ...]
     events: tuple[PreparedEvent, ...]
 
     @property
     def count(self) -> int:
         """How many functions are looked for."""
-        return len(self.kinks) + len(self.events)
+        return len(self.functions)
 
 
 @dataclass(eq=False)
@@ -67,7 +75,7 @@ class WatchedOrbit:
     system, kinks, events
         The equations, their kinks, and the person's events.
     tolerances
-        The relative and the absolute one.
+        The relative one, and which part of the sizes of components the absolute one is.
     forward
         1 where time runs forward, −1 where it runs back.
     longest
@@ -96,6 +104,7 @@ class WatchedOrbit:
         if self.kinks is not None:
             self.signs = signs_at_start(self.kinks, self._place(), self.forward)
         self._sides = self._sides_now(rounding=0.0)  # as the other engines take a start
+        self._sizes = abs(self.y)
 
     @property
     def compile_seconds(self) -> float:
@@ -106,13 +115,15 @@ class WatchedOrbit:
         before, kept = float(integrator.t), integrator.y.copy()
         integrator.max_step = self.longest(before, kept)
         message = integrator.step()
+        self._sizes = np.fmax(self._sizes, abs(integrator.y))
+        integrator.atol = self.tolerances[1] * self._sizes
         self.steps += 1
         if integrator.status == "failed" or not np.isfinite(integrator.y).all():
             raise _lost(before, kept[self.system.rows], message)
 
     def go(self, times: Array, states: Array, progress: Callable[[float], None]) -> None:
         """Put the states at the times after the first into their columns; ``sampled`` says how many are there."""
-        in_a_row, size = 0, None
+        in_a_row, size = 0, self._measured(float(times[-1]))
         while self.sampled < len(times) and not self.stopped:
             begun, integrator = self.t, self._integrator(self.t, self.y, float(times[-1]), size)
             met, before, kept = None, self.t, self.y
@@ -133,6 +144,18 @@ class WatchedOrbit:
                 lost = self._error("events pile up there; stop the motion before")
                 raise PiledUpError(str(lost), lost.time, lost.state)
 
+    def _measured(self, end: float) -> float:
+        """Find the sizes of the state's components, and return the length of the first step."""
+        rate, (relative, _) = self._watch().rate.call, self.tolerances
+
+        def counted(t: float, y: Array) -> Array:
+            self.evaluations += 1
+            return rate(t, y)
+
+        found = time_and_sizes(counted, self.t, self.y, end - self.t, relative)
+        self._sizes = found.sizes
+        return found.time * (_SURE * relative) ** (1 / _ORDER)
+
     def _sample(self, times: Array, states: Array, interpolant: _Interpolant, until: float) -> None:
         """Put the states at the times of a step into their columns."""
         reached = self.sampled
@@ -149,15 +172,7 @@ class WatchedOrbit:
         watch, sides = self._watch(), self._sides
         zeros: Sequence[Zero] = ()
         if watch.count:
-            zeros, sides = zeros_in_step(
-                lambda t: watch.values.call(t, interpolant(t) if t != integrator.t else integrator.y)[
-                    : watch.count
-                ],
-                before,
-                float(integrator.t),
-                self._sides,
-                len(watch.kinks),
-            )
+            zeros, sides = self._zeros(before, integrator, interpolant)
         for zero in zeros:
             event = self._event(zero)
             if event is not None and not event.event.counts(zero.rising):
@@ -168,6 +183,28 @@ class WatchedOrbit:
             self.crossings.append(Crossing(event.event, t, y[self.system.rows], zero.rising))
         self.t, self.y, self._sides = float(integrator.t), integrator.y.copy(), sides
         return None
+
+    def _zeros(self, before: float, integrator: Any, interpolant: Any) -> tuple[list[Zero], Array]:
+        watch, end = self._watch(), float(integrator.t)
+
+        def values(t: float) -> Array:
+            return watch.values.call(t, interpolant(t) if t != end else integrator.y)
+
+        try:
+            return zeros_in_step(values, before, end, self._sides, self._roundings, len(watch.kinks))
+        except TooFastError as error:
+            event = self._event(Zero(before, error.which, rising=True))
+            what = "a kink's function" if event is None else str(event.event)
+            raise self._error(
+                f"{what} changes too often to be followed in one step, which goes to t = {end:.9g}: give a smaller "
+                "max_step"
+            ) from None
+
+    def _roundings(self) -> Array:
+        """Return how large, of the functions that are looked for, rounding makes those that vanish here."""
+        watch, at = self._watch(), self._place()
+        system = watch.regime.system
+        return np.array([_ROUNDING * at.size(system, node) for node in watch.functions])
 
     def _event(self, zero: Zero) -> PreparedEvent | None:
         """Return the person's event that a zero belongs to; None for a kink."""
@@ -240,7 +277,7 @@ class WatchedOrbit:
     def _meet(self, event: PreparedEvent, *, rising: bool) -> None:
         y, after = self.y[self.system.rows], None
         if event.jump is not None:
-            self._check_again(event)
+            self._check_again(event, rising=rising)
             self.y = np.array(self._place().values(self.system, event.jump))
             if not np.isfinite(self.y).all():
                 raise self._error("the new state of an event is not finite")
@@ -250,7 +287,7 @@ class WatchedOrbit:
         self.crossings.append(Crossing(event.event, self.t, y, rising, after))
         self.stopped = event.event.action == "stop"
 
-    def _check_again(self, event: PreparedEvent) -> None:
+    def _check_again(self, event: PreparedEvent, *, rising: bool) -> None:
         """Make sure that an event that changed the state is not met again at the same instant.
 
         Raises
@@ -258,8 +295,11 @@ class WatchedOrbit:
         PiledUpError
             It is.
         """
-        latest = [met for met in self.crossings[-9:] if met.event is event.event and met.t == self.t]
-        if latest and not event.switches:
+        apart = [abs(met.t - self.t) for met in self.crossings[-9:] if met.event is event.event]
+        (rate,) = self._place().values(self.system, [event.rate])
+        turned = rate * self.forward * (1 if rising else -1) < 0
+        near = _AT_ONCE * abs(self.t) if turned else 0.0
+        if apart and min(apart) <= near and not event.switches:
             at_once = (
                 f"{event.event} is met again at once at {time_and_state(self.t, self.y[self.system.rows])}"
             )
@@ -335,17 +375,25 @@ class WatchedOrbit:
             regime,
             compiled_nodes(self.system, smooth.rates),
             compiled_nodes(self.system, [*functions, *rates]),
+            tuple(functions),
             tuple(k for k, _ in looked),
             folded,
         )
 
-    def _integrator(self, t: float, y: Array, end: float, first: float | None) -> Any:
+    def _integrator(self, t: float, y: Array, end: float, first: float) -> Any:
         from scipy import integrate
 
         relative, absolute = self.tolerances
-        first = None if first is None else min(first, abs(end - t))
-        return integrate.DOP853(
-            self._watch().rate.call, t, y, end, rtol=relative, atol=absolute, first_step=first or None
+        self._sizes = np.fmax(self._sizes, abs(y))
+        dop853: Any = integrate.DOP853  # its stub has no array of tolerances
+        return dop853(
+            self._watch().rate.call,
+            t,
+            y,
+            end,
+            rtol=relative,
+            atol=absolute * self._sizes,
+            first_step=min(first, abs(end - t)) or None,
         )
 
     def _place(self) -> Place:

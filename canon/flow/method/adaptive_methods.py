@@ -62,7 +62,9 @@ class DOP853:
     Parameters
     ----------
     tolerance
-        Relative and absolute tolerance of a step.
+        What a step may miss, in parts of the size of each component of the state: the largest that it has had so far,
+        and at first what it comes to in the time in which the motion changes. So it is in whatever units. Components
+        that would be zero but for rounding are measured by the terms of their rates.
     """
 
     tolerance: float = 1e-12

@@ -28,9 +28,11 @@ class Event:
     """Event of a motion: what is to happen where a function g(q, p, t) crosses zero.
 
     A crossing is a change of sign through zero, not by a jump or over a pole, as tan θ has. A motion that touches g = 0
-    and turns back on the same side crosses nothing, nor does one that starts at g = 0 cross at its start.
+    and turns back on the same side crosses nothing, nor does one that starts at g = 0, at rest or not, cross there.
 
-    With :class:`canon.Taylor` the zero is that of the step's own Taylor polynomial. With a method of
+    With :class:`canon.Taylor` the zero is that of the step's own Taylor polynomial. With :class:`canon.DOP853` the
+    step's interpolant is cut until g and its rate are in each part as at its ends; where that takes too many parts the
+    motion ends with an error. With a method of
     fixed steps an event is noticed where g has another sign after a step than before it, or where g
     approached zero before the step and recedes after it (then the extremum between is looked for, so that two
     crossings in one step are found); it is located to the round-off of time by partial steps of the same

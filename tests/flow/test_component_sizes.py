@@ -1,0 +1,111 @@
+"""DOP853's tolerance is a relative one in whatever units, and components that are zero or rounding don't stop it."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from canon import Hamiltonian, coordinates, parameters, propagate
+from canon.flow.adaptive.component_sizes import time_and_sizes
+
+x, y, z = coordinates("x y z")
+px, py, pz = x.momentum, y.momentum, z.momentum
+a, m, k = parameters("a m k", positive=True)
+QUARTIC = Hamiltonian(px**2 / 2 + x**2 / 2 + x**4 / (4 * a**2), [x], [px])
+KEPLER = Hamiltonian((px**2 + py**2) / (2 * m) - k * m / (x**2 + y**2) ** 0.5, [x, y], [px, py])
+SPACE = Hamiltonian((px**2 + py**2 + pz**2) / 2 - (x**2 + y**2 + z**2) ** -0.5, [x, y, z], [px, py, pz])
+
+
+def chain(masses):
+    """Return Fermi, Pasta and Ulam's chain between walls."""
+    sites = coordinates(f"x1:{masses + 1}")
+    springs = zip((0, *sites), (*sites, 0), strict=True)
+    tension = sum((b - a) ** 2 / 2 + (b - a) ** 4 / 4 for a, b in springs)
+    return Hamiltonian(sum(q.momentum**2 for q in sites) / 2 + tension, sites, [q.momentum for q in sites])
+
+
+@pytest.mark.parametrize("size", [1e-9, 1e-6, 1e-3, 1, 1e9])
+def test_an_amplitude_in_any_unit(size):
+    exact = solve_ivp(
+        lambda _, q: [q[1], -q[0] - q[0] ** 3], (0, 10), [1, 0], method="DOP853", rtol=1e-13, atol=1e-14
+    ).y[:, -1]
+    found = propagate(QUARTIC, (0, 10), [size, 0], parameters={a: size}, method="DOP853")
+    assert abs(found.final / size - exact).max() < 1e-11
+    assert found.steps == propagate(QUARTIC, (0, 10), [1, 0], parameters={a: 1}, method="DOP853").steps
+
+
+@pytest.mark.parametrize(
+    ("radius", "mass", "pull"), [(1, 1, 1), (1e-10, 9.1e-31, 253.0), (1.5e11, 6e24, 1.3e20)]
+)
+def test_a_circle_in_units_of_atoms_and_of_planets(radius, mass, pull):
+    speed = (pull / radius) ** 0.5
+    start = [radius, 0, 0, mass * speed]
+    turn = 2 * np.pi * radius / speed
+    for way in (1, -1):
+        found = propagate(KEPLER, (0, way * turn), start, parameters={m: mass, k: pull}, method="DOP853")
+        assert abs(found.final - start)[:2].max() < 1e-10 * radius
+        assert abs(found.final - start)[2:].max() < 1e-10 * mass * speed
+
+
+@pytest.mark.parametrize("start", [0, np.pi / 2, np.pi])
+def test_an_angle_beside_a_long_length(start):
+    """The angle of a circle grows as the time, whatever the radius is measured by."""
+    radius, rate = 1e7, 1e-3
+    polar = Hamiltonian(px**2 / 2 + py**2 / (2 * x**2) - rate**2 * radius**3 / x, [x, y], [px, py])
+    found = propagate(polar, (0, 1e4), [radius, start, 0, rate * radius**2], method="DOP853")
+    assert found.final[1] == pytest.approx(start + 10, abs=1e-10)
+
+
+@pytest.mark.parametrize("middle", [0, 1e-17])
+@pytest.mark.parametrize("size", [1, 0.1 + 0.2])
+def test_a_mass_held_by_symmetry_costs_no_steps(middle, size):
+    found = propagate(chain(3), (0, 20), [size, middle, -size, 0, 0, 0], method="DOP853")
+    moved = propagate(chain(3), (0, 20), [size, size / 3, -size, 0, 0, 0], method="DOP853")
+    exact = solve_ivp(
+        lambda _, q: [q[1], -2 * q[0] - 2 * q[0] ** 3],
+        (0, 20),
+        [size, 0],
+        method="DOP853",
+        rtol=1e-13,
+        atol=1e-15,
+    ).y[:, -1]
+    assert found.final[[0, 3]] == pytest.approx(exact, abs=1e-9)
+    assert found.steps < 2 * moved.steps
+
+
+def test_masses_that_a_wave_reaches_late_cost_few_steps():
+    one = [1.0] + [0.0] * 61
+    assert propagate(chain(31), (0, 20), one, method="DOP853").steps < 600
+
+
+def test_a_plane_in_space_is_as_the_plane():
+    flat = propagate(KEPLER, (0, 20), [1, 0, 0, 1.2], parameters={m: 1, k: 1}, method="DOP853")
+    within = propagate(SPACE, (0, 20), [1, 0, 0, 0, 1.2, 0], method="DOP853")
+    assert within.final[[0, 1, 3, 4]] == pytest.approx(flat.final, abs=1e-10)
+    assert abs(within.steps - flat.steps) < 0.3 * flat.steps
+    assert (within.y[[2, 5]] == 0).all()
+
+
+def test_a_resumed_motion_is_the_whole_one():
+    size = 1e-9
+    whole = propagate(QUARTIC, (0, 10), [size, 0], parameters={a: size}, method="DOP853")
+    half = propagate(QUARTIC, (0, 5), [size, 0], parameters={a: size}, method="DOP853").resume(10)
+    assert half.final == pytest.approx(whole.final, rel=1e-10)
+
+
+def test_what_stands_still_stands():
+    found = propagate(QUARTIC, (0, 10), [0, 0], parameters={a: 1}, method="DOP853")
+    assert (found.y == 0).all()
+
+
+def test_sizes_of_an_oscillator_are_its_amplitudes():
+    spring, mass, amplitude = 7e5, 3e-4, 2e-6
+    momentum = amplitude * (spring * mass) ** 0.5
+
+    def rate(_t, state):
+        return np.array([state[1] / mass, -spring * state[0]])
+
+    for start in ([amplitude, 0.0], [0.0, momentum], [6e-17 * amplitude, momentum]):
+        found = time_and_sizes(rate, 0.0, np.array(start), 1.0, 1e-12)
+        assert 0.25 < found.time * (spring / mass) ** 0.5 <= 1
+        assert (0.05 * np.array([amplitude, momentum]) < found.sizes).all()
+        assert (found.sizes <= np.array([amplitude, momentum])).all()
