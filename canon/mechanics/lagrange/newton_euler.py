@@ -16,7 +16,7 @@ from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import acceleration, time
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.all_vanish import all_vanish
-from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain_all
+from canon.mechanics.algebra.dynamicsymbols import check_none_reads_as_the_time, coordinate_symbols, plain_all
 from canon.mechanics.algebra.linear import eliminate
 from canon.mechanics.algebra.substitution import as_tuple, entry, exchanged
 from canon.mechanics.lagrange.appell import cross
@@ -133,6 +133,7 @@ class NewtonEuler:
         object.__setattr__(self, "q", coordinate_symbols(q))
         object.__setattr__(self, "reactions", coordinate_symbols(reactions))
         named = (*self.q, *self.reactions)
+        check_none_reads_as_the_time(named, t, "NewtonEuler(bodies, q, loads, reactions")
         object.__setattr__(self, "loads", tuple(_plain_load(load, named, t) for load in loads))
         object.__setattr__(self, "t", t)
         for load in self.loads:
