@@ -55,7 +55,9 @@ def swung(until):
     ],
 )
 def test_the_time_is_no_variable(made):
-    with pytest.raises(ValueError, match=r"variable t is the symbol of the time too: .* t=Symbol\('s', real=True\)"):
+    with pytest.raises(
+        ValueError, match=r"variable t is the symbol of the time too: .* t=Symbol\('s', real=True\)"
+    ):
         made()
 
 

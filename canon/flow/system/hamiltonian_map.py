@@ -88,7 +88,7 @@ class HamiltonianMap:
         object.__setattr__(self, "q", given_symbols(q, "q"))
         object.__setattr__(self, "p", given_symbols(p, "p"))
         object.__setattr__(self, "t", t)
-        check_none_is_the_time((*self.q, *self.p), t, "HamiltonianMap(T, V, q, p")
+        check_none_is_the_time((*self.q, *self.p), "HamiltonianMap(T, V, q, p", t)
         if len(self.q) != len(self.p):
             raise ValueError(f"{len(self.q)} q and {len(self.p)} p: give as many of each")
         for name, given, others in (("T", self.T, {*self.q, t}), ("V", self.V, {*self.p, t})):

@@ -93,7 +93,7 @@ def needs_plain(symbols: Collection[Any], t: Symbol = time) -> bool:
     return bare != t and bare in symbols
 
 
-def check_none_is_the_time(variables: Sequence[Symbol], t: Symbol, call: str) -> None:
+def check_none_is_the_time(variables: Sequence[Symbol], call: str, t: Symbol) -> None:
     """Refuse a variable whose symbol is that of the time: nothing could tell which of them is meant.
 
     Parameters
@@ -103,7 +103,7 @@ def check_none_is_the_time(variables: Sequence[Symbol], t: Symbol, call: str) ->
 
     Examples
     --------
-    >>> check_none_is_the_time([time], time, "PoissonSystem(H, x, structure")
+    >>> check_none_is_the_time([time], "PoissonSystem(H, x, structure", time)
     Traceback (most recent call last):
         ...
     ValueError: the variable t is the symbol of the time too: give it another name, or the time another symbol, Pois...
@@ -117,10 +117,10 @@ def check_none_is_the_time(variables: Sequence[Symbol], t: Symbol, call: str) ->
     )
 
 
-def check_none_reads_as_the_time(variables: Sequence[Symbol], t: Symbol, call: str) -> None:
+def check_none_reads_as_the_time(variables: Sequence[Symbol], call: str, t: Symbol) -> None:
     """Refuse the same, and a symbol without assumptions that :func:`plain` takes for the time by its name."""
     for clock in (t, Symbol(t.name)):
-        check_none_is_the_time(variables, clock, call)
+        check_none_is_the_time(variables, call, clock)
 
 
 def _rate_named(name: str, coordinates: Mapping[str, Symbol]) -> Symbol | None:

@@ -125,9 +125,9 @@ class GeneratingFunction:
         object.__setattr__(self, "kind", kinds_of(kind, n))
         object.__setattr__(self, "F", given_expression(F, "F"))
         object.__setattr__(self, "t", given_kind(t, Symbol, "the time", "the domain comes before it"))
-        check_none_is_the_time((*self.q, *self.p, *self.new_q, *self.new_p), t, "GeneratingFunction(kind, F, q, p, new_q, new_p")
         object.__setattr__(self, "domain", as_domain(domain))
         variables = (*self.q, *self.p, *self.new_q, *self.new_p)
+        check_none_is_the_time(variables, "GeneratingFunction(kind, F, q, p, new_q, new_p", t)
         if len(variables) != 4 * n or len(set(variables)) < 4 * n:
             raise ValueError(
                 f"a generating function of {counted(n, 'degree')} "

@@ -74,7 +74,7 @@ class Hamiltonian:
     ) -> None:
         object.__setattr__(self, "q", coordinate_symbols(q))
         object.__setattr__(self, "p", coordinate_symbols(p))
-        check_none_reads_as_the_time((*self.q, *self.p), t, "Hamiltonian(H, q, p")
+        check_none_reads_as_the_time((*self.q, *self.p), "Hamiltonian(H, q, p", t)
         given = given_expression(H, "H")
         long = any(each.is_long for each in sums_within(given))
         object.__setattr__(self, "H", plain(given, (*self.q, *self.p), t, keep_sums=long))

@@ -82,7 +82,7 @@ class PoissonSystem:
         object.__setattr__(self, "x", given_symbols(x, "x"))
         object.__setattr__(self, "structure", sp.ImmutableDenseMatrix(structure))
         object.__setattr__(self, "t", t)
-        check_none_is_the_time(self.x, t, "PoissonSystem(H, x, structure")
+        check_none_is_the_time(self.x, "PoissonSystem(H, x, structure", t)
         size = len(self.x)
         if self.structure.shape != (size, size):
             rows, columns = self.structure.shape

@@ -100,7 +100,7 @@ class Lagrangian:
             raise ValueError("no coordinates given; a system moves in at least one")
         if len({*symbols}) < len(symbols):
             raise ValueError(f"the coordinates {symbols} are not all different; every one moves on its own")
-        check_none_reads_as_the_time(symbols, t, "Lagrangian(L, q")
+        check_none_reads_as_the_time(symbols, "Lagrangian(L, q", t)
         given = _forces(forces, symbols)
         expressions = [plain(e, symbols, t) for e in (L, *given)]
         object.__setattr__(self, "L", expressions[0])

@@ -133,7 +133,7 @@ class NewtonEuler:
         object.__setattr__(self, "q", coordinate_symbols(q))
         object.__setattr__(self, "reactions", coordinate_symbols(reactions))
         named = (*self.q, *self.reactions)
-        check_none_reads_as_the_time(named, t, "NewtonEuler(bodies, q, loads, reactions")
+        check_none_reads_as_the_time(named, "NewtonEuler(bodies, q, loads, reactions", t)
         object.__setattr__(self, "loads", tuple(_plain_load(load, named, t) for load in loads))
         object.__setattr__(self, "t", t)
         for load in self.loads:

@@ -82,7 +82,7 @@ class Kinematics:
         object.__setattr__(self, "q", tuple(coordinate(s) for s in q))
         natural = tuple(velocity(s) for s in self.q)
         object.__setattr__(self, "u", natural if u is None else tuple(coordinate(w) for w in u))
-        check_none_reads_as_the_time((*self.q, *self.u), t, "Kinematics(q, u, q_dot")
+        check_none_reads_as_the_time((*self.q, *self.u), "Kinematics(q, u, q_dot", t)
         object.__setattr__(self, "t", t)
         rates = self.u if q_dot is None else tuple(self.plain(f) for f in as_tuple(q_dot))
         object.__setattr__(self, "q_dot", rates)
