@@ -277,7 +277,9 @@ def test_more_digits_are_taken_where_doubles_do_not_suffice():
     assert choice.precision in ("extended", "quad", "double-double")
 
 
-@pytest.mark.parametrize(("accuracy", "precisions"), [(1e-18, ["extended", "double-double"]), (1e-30, ["quad"])])
+@pytest.mark.parametrize(
+    ("accuracy", "precisions"), [(1e-18, ["extended", "double-double"]), (1e-30, ["quad"])]
+)
 def test_what_comes_is_no_more_than_was_asked_where_doubles_resolve_less(accuracy, precisions):
     """Their errors of 4e-19 in a pilot run are luck: with another last digit of the step 1e-17 came."""
     choice = choose(PENDULUM, 20.0, [0.5, 0.0], accuracy=accuracy, methods=["RK4", "forest-ruth", *FEW])

@@ -1,9 +1,9 @@
 """Resolution of the numbers: the least relative error that a motion in some precision can be promised to have.
 
-Every step of a method is rounded, and so are its coefficients: that of a drift may be a part u of it longer than that of
-the kick beside it, which moves the energy to and fro by such a part of its terms whatever the step. What is kept
-beside the doubles by compensation does not change that. A pilot run may err less by luck; with a step that differs in
-its last digit it would not.
+Every step of a method is rounded, and so are its coefficients: a drift may be longer by a part u of it than the kick
+beside it, which moves the energy to and fro by such a part of its terms whatever the step. What is kept beside the
+doubles by compensation does not change that. A pilot run may err less by luck; with a step that differs in its last
+digit it would not.
 """
 
 from __future__ import annotations

@@ -69,7 +69,7 @@ DISTURBED_ORDER = 8
 disturbance, 2n for SABA_n. It is only where the search begins."""
 
 FINEST = 2.0
-"""How many times the least error of its numbers is aimed at where less was asked than they resolve: to say what comes."""
+"""How many times the least error of the numbers is aimed at where less was asked than they resolve."""
 
 STAGES_A_STEP, GAUSS_STAGES_A_STEP = 16.0, 6.0
 """By how many stages the widest step grows by one of Taylor's, of explicit methods and of Gauss's: a rule of thumb, by
