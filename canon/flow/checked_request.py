@@ -21,7 +21,7 @@ from canon.flow.method.engine import FIXED_STEPS
 from canon.flow.method.method import TimeTransformed
 from canon.flow.method.method_text import method_of
 from canon.flow.run.sampling_plan import adaptive_plan, sampling
-from canon.flow.system.start_of_motion import state_in_order
+from canon.flow.system.start_of_motion import read_by_labels, state_in_order
 from canon.flow.transformed.extended_hamiltonian import extended, extended_system
 from canon.frozen_mapping import FrozenMapping
 from canon.kernel.llvm.number_types import double_pair
@@ -81,6 +81,7 @@ class HamiltonianCourse:
         KeyError, ValueError
             As :func:`canon.flow.propagation.propagate` documents them.
         """
+        y0 = read_by_labels(y0)
         if isinstance(y0, Mapping):
             y0 = state_in_order(y0, self.variables)
         states, single = _with_parameters(y0, len(self.variables) // 2, self.varying)

@@ -77,7 +77,9 @@ def propagate(
     y0
         The starting state, shape (2n,), or many of them, shape (2n, orbits); or a number for each variable by symbol or
         name, ``{theta: 0.1, "theta_dot": 0}``. Floats are taken for the numbers they are; text, fractions and long
-        doubles keep what a double would lose. Of a scene: the name of one of its starts, the first where not given.
+        doubles keep what a double would lose. A pandas series or frame and an xarray array are read by their labels as
+        a mapping is, in order where the labels are 0, 1, …. Of a scene: the name of one of its starts, the first where
+        not given.
     method
         ``Splitting(...)``, ``Gauss(...)``, ``RK4()``, ``Taylor(...)`` or ``DOP853(...)``; ``Taylor()`` where
         not given. By exactly solvable parts: ``WisdomHolman(...)``, ``SABA(...)``, ``SBAB(...)``; with steps that

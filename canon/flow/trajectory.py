@@ -156,7 +156,8 @@ class Trajectory:
         ----------
         what
             ``"theta"``, ``"theta_dot"``, ``"p_theta"``, ``"lambda_1"``, ``"t"``, ``"energy"``, ``"work"``, an
-            observable's name; or a SymPy expression in what moves, the time and the parameters.
+            observable's name; or a SymPy expression in what moves, the time and the parameters. A variable of the state
+            that is called ``t``, ``energy`` or ``work`` comes before these: ``motion.energy`` has the energy then.
 
         Returns
         -------
@@ -180,7 +181,7 @@ class Trajectory:
         if isinstance(what, str):
             if what in self.observables:
                 return self.observables[what]
-            if what in ("t", "energy", "work"):
+            if what in ("t", "energy", "work") and what not in self.record.names:
                 return {"t": lambda: self.t, "energy": lambda: self.energy, "work": lambda: self.work}[what]()
         return self.record.along(what)
 
@@ -271,7 +272,7 @@ class Trajectory:
     def to_xarray(self) -> xarray.Dataset:
         """Return the variables, the energy and the observables as an xarray dataset along ``t`` (extra ``export``)."""
         columns = dict(zip(self.record.names, self.y, strict=True))
-        if self.energies is not None:
+        if self.energies is not None and "energy" not in columns:
             columns["energy"] = self.energy
         said = {"method": str(self.method), "precision": self.precision, "steps": self.steps}
         return labelled(self.t, {**columns, **self.observables}, said)

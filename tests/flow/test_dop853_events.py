@@ -83,7 +83,7 @@ def test_a_passing_where_one_run_ends_and_the_next_begins_is_counted_once():
         assert len(met) <= 8
 
 
-@pytest.mark.parametrize("start", [[1, 0], [1, 0.5], [0.7, 0.1], [2, 0.3], [3, 1]])
+@pytest.mark.parametrize("start", [[1, 0], [1, 0.5], [0.5, 0], [0.7, 0.1], [2, 0.3], [3, 1]])
 def test_a_ball_that_bounces_ever_lower_does_not_fall_through_the_floor(start):
     ball = Lagrangian(x.dot**2 / 2 - x, [x])
     end = start[1] + 3 * (start[1] ** 2 + 2 * start[0]) ** 0.5

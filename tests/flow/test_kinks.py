@@ -9,7 +9,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
-from scipy.interpolate import CubicSpline, make_interp_spline
+from scipy.interpolate import Akima1DInterpolator, CubicSpline, make_interp_spline
 
 from canon import (
     AccuracyWarning,
@@ -338,6 +338,52 @@ def test_samples_that_make_no_spline_are_refused():
             sampled_function(x, at, values)
     with pytest.raises(TypeError, match="no spline"):
         sampled_function(x, math.sin)
+
+
+@pytest.mark.parametrize("made", [CubicSpline, make_interp_spline])
+def test_splines_that_are_something_else_beyond_their_ends_are_refused(made):
+    """A periodic one, to be followed, is a table of as many periods; one that ends goes on if it is told to."""
+    at = np.linspace(0, 2 * np.pi, 13)
+    values = np.cos(at)
+    values[-1] = values[0]
+    with pytest.raises(ValueError, match=r"is periodic, .* over as many periods"):
+        sampled_function(x, made(at, values, bc_type="periodic"))
+    ending = made(at, values)
+    ending.extrapolate = False
+    with pytest.raises(ValueError, match=r"no values beyond 0 … 6\.28.*extrapolate = True"):
+        sampled_function(x, ending)
+    ending.extrapolate = True
+    assert float(sampled_function(x, ending).subs(x, 7.0)) == pytest.approx(float(ending(7.0)), abs=1e-13)
+
+
+def test_akimas_spline_ends_where_its_samples_do_unless_told_otherwise():
+    at = np.linspace(-2, 2, 9)
+    with pytest.raises(ValueError, match="extrapolate=False"):
+        sampled_function(x, Akima1DInterpolator(at, at**2))
+    spline = Akima1DInterpolator(at, at**2, extrapolate=True)
+    assert float(sampled_function(x, spline).subs(x, 2.5)) == pytest.approx(float(spline(2.5)), abs=1e-13)
+
+
+def test_a_periodic_table_over_several_periods_moves_as_in_scipy():
+    """The remedy that the refusal of a periodic spline names."""
+    at = np.linspace(0, 2 * np.pi, 13)
+    values = np.cos(at)
+    values[-1] = values[0]
+    spline = CubicSpline(at, values, bc_type="periodic")
+    wide = np.concatenate([at[:-1] + 2 * np.pi * k for k in range(-1, 3)])
+    motion = propagate(one(sampled_function(x, wide, spline(wide))), (0, 5.5), [0.5, 2.0])
+    by_scipy = solve_ivp(
+        lambda _, y: [y[1], -spline(y[0], 1)],
+        (0, 5.5),
+        [0.5, 2.0],
+        "DOP853",
+        rtol=1e-11,
+        atol=1e-12,
+        max_step=0.01,
+    )
+    assert motion.final == pytest.approx(
+        by_scipy.y[:, -1], abs=1e-4
+    )  # the ends of the wide table are not-a-knot
 
 
 def test_the_error_of_what_rests_in_a_kink_is_known_at_once():

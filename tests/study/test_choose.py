@@ -10,21 +10,25 @@ import sympy as sp
 
 from canon import DOP853, RK4, Gauss, Hamiltonian, Splitting, Taylor, choose, coordinates, propagate
 from canon.flow.method.method import TimeTransformed
+from canon.flow.method.number_formats import unit_round_off
 from canon.flow.method.setting import Setting
 from canon.flow.method.solvable_splitting import WisdomHolman
 from canon.scene import find
 from canon.study.errors import StudyError
 from canon.study.method_choice import candidate
-from canon.study.method_choice.candidate import HOPELESS, candidate_methods
+from canon.study.method_choice.candidate import HOPELESS, by_order, candidate_methods, tried_with
 from canon.study.method_choice.choice_question import Question
 from canon.study.method_choice.error_law import expected_error
 from canon.study.method_choice.pilot_run import Pilot, pilot
+from canon.study.method_choice.resolution import least_error
 from canon.study.method_choice.tolerance_search import tolerance_at
 from tests.flow.test_tangent_maps import chain
 from tests.study import series
 
 FEW = (Splitting("verlet"), Splitting("kahan-li-8"), Taylor())
 VERLET = Setting(Splitting("verlet"), step=0.1)
+X = coordinates("x")
+PENDULUM = Hamiltonian(X.momentum**2 / 2 - sp.cos(X), [X], [X.momentum])
 RUNGE_KUTTA = Setting(RK4(), step=0.1)
 
 
@@ -271,6 +275,42 @@ def test_more_digits_are_taken_where_doubles_do_not_suffice():
     choice = choose(scene, 50.0 * scene.period, accuracy=1e-17, methods=[Splitting("kahan-li-8"), Taylor()])
     assert choice.reached
     assert choice.precision in ("extended", "quad", "double-double")
+
+
+@pytest.mark.parametrize(
+    ("accuracy", "precisions"), [(1e-18, ["extended", "double-double"]), (1e-30, ["quad"])]
+)
+def test_what_comes_is_no_more_than_was_asked_where_doubles_resolve_less(accuracy, precisions):
+    """Their errors of 4e-19 in a pilot run are luck: with another last digit of the step 1e-17 came."""
+    choice = choose(PENDULUM, 20.0, [0.5, 0.0], accuracy=accuracy, methods=["RK4", "forest-ruth", *FEW])
+    assert choice.reached
+    assert choice.precision in precisions
+    motion = choice.run(samples=100)
+    assert np.abs(motion.energy_error).max() <= accuracy
+    doubles = [each for each in choice.candidates if each.precision in ("double", "compensated")]
+    assert len(doubles) == 2 + len(FEW)
+    assert not any(each.keeps for each in doubles)
+    assert min(each.predicted_error for each in doubles) >= 2.0**-54
+
+
+def test_an_accuracy_that_no_numbers_resolve_is_said_to_be_out_of_reach():
+    choice = choose(PENDULUM, 20.0, [0.5, 0.0], accuracy=1e-40)
+    assert not choice.reached
+    assert 1e-35 < choice.predicted_error < 1e-32
+    assert "quad numbers resolve no error below 4.8e-35" in str(choice)
+
+
+@pytest.mark.parametrize("precision", ["single", "compensated", "double", "quad"])
+def test_errors_are_promised_down_to_half_a_unit_of_rounding(precision):
+    assert least_error(precision) == unit_round_off(precision) / 2.0
+
+
+def test_the_step_that_the_order_promises_is_no_better_than_its_numbers():
+    question = Question(PENDULUM, np.array([0.5, 0.0]), {}, 20.0)
+    setting = Setting(Splitting("verlet"), step=1e-2, precision="compensated")
+    found = by_order(question, tried_with(question, setting, 20.0), 6e-17)
+    assert found.keeps
+    assert found.predicted_error == least_error("compensated")
 
 
 def test_a_choice_runs():

@@ -118,6 +118,27 @@ def test_rounding_is_measured_by_the_terms_of_the_energy():
     assert drift(motion).cause != "truncation"
 
 
+def driven(**how):
+    """An oscillator that starts with an energy of ½ and is driven to one of 139, all of it work."""
+    x = coordinates("x")
+    forced = Lagrangian(x.dot**2 / 2 - x**2 / 2, [x], forces=[-x.dot / 50 + sp.cos(time) / 3])
+    return propagate(forced, (0, 3000), [1.0, 0.0], samples=8192, **how)
+
+
+def test_rounding_is_measured_by_the_energy_and_the_work_on_the_way():
+    found = drift(driven(precision="quad"))
+    assert (found.verdict, found.cause) == (Growth.ROUND_OFF, "round-off")
+    motion = driven()
+    assert error_series(motion).walk > 139.0 / 0.5 * 2.0**-53 * np.sqrt(motion.steps)
+    assert drift(motion).cause == ""
+    assert "half the step" in drift(motion).reason
+
+
+@pytest.mark.parametrize("how", [{"method": Taylor(1e-8)}, {"method": RK4(), "step": 0.05}])
+def test_truncation_of_a_driven_motion_is_told_still(how):
+    assert drift(driven(**how)).cause == "truncation"
+
+
 def test_a_followed_observable_a_backward_motion_and_one_of_many_orbits():
     x, y = kepler().q
     spin = x * y.momentum - y * x.momentum

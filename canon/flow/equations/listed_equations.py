@@ -12,7 +12,7 @@ from canon.expression.symbols.symbol import time
 from canon.expression.symbols.user_input import given_expression, given_symbols
 from canon.flow.equations.first_order_motion import FirstOrderMotion, from_any_start
 from canon.mechanics.algebra.substitution import exchanged
-from canon.mechanics.hamilton.vector_field import VectorField
+from canon.mechanics.hamilton.vector_field import VectorField, check_moves_in_time
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,6 +25,11 @@ __all__ = ["field_motion", "heyoka_field", "is_heyoka_system"]
 def field_motion(field: VectorField, t: Symbol = time) -> FirstOrderMotion:
     """Return the equations ẋ = X(x, t) of a vector field; no energy is known of it.
 
+    Raises
+    ------
+    ValueError
+        One of the variables is the time.
+
     Examples
     --------
     >>> from sympy import symbols
@@ -32,6 +37,7 @@ def field_motion(field: VectorField, t: Symbol = time) -> FirstOrderMotion:
     >>> field_motion(VectorField((y, -x), (x, y))).state
     (x, y)
     """
+    check_moves_in_time(field, t)
     graph = Graph()
     rates = tuple(graph.from_sympy(given_expression(f, "the vector field")) for f in field.components)
     return FirstOrderMotion("vector field", graph, field.x, (), "x", t, rates, holds_from=from_any_start)

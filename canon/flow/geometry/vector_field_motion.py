@@ -29,7 +29,7 @@ from canon.kernel.program.hamilton_equations import (
     exact_numbers,
 )
 from canon.kernel.program.series_gaps import may_have_gaps
-from canon.mechanics.hamilton.vector_field import VectorField
+from canon.mechanics.hamilton.vector_field import VectorField, check_moves_in_time
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -139,6 +139,7 @@ def vector_field_system(
     """Return Hamilton's equations, or those of a vector field, with numbers for the parameters."""
     graph, numbers = Graph(), exact_numbers(parameters)
     if isinstance(motion, VectorField):
+        check_moves_in_time(motion, time)
         empty = VectorFieldSystem(graph, motion.x, time, numbers, ())
         rates = tuple(empty.node(f, "the vector field") for f in motion.components)
         return VectorFieldSystem(graph, motion.x, time, numbers, rates)

@@ -16,6 +16,7 @@ from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import time
 from canon.expression.symbols.user_input import given_expression, given_symbols
 from canon.flow.method.method import Splitting
+from canon.mechanics.algebra.dynamicsymbols import check_none_is_the_time
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 
 if TYPE_CHECKING:
@@ -87,6 +88,7 @@ class HamiltonianMap:
         object.__setattr__(self, "q", given_symbols(q, "q"))
         object.__setattr__(self, "p", given_symbols(p, "p"))
         object.__setattr__(self, "t", t)
+        check_none_is_the_time((*self.q, *self.p), "HamiltonianMap(T, V, q, p", t)
         if len(self.q) != len(self.p):
             raise ValueError(f"{len(self.q)} q and {len(self.p)} p: give as many of each")
         for name, given, others in (("T", self.T, {*self.q, t}), ("V", self.V, {*self.p, t})):

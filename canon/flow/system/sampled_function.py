@@ -21,8 +21,11 @@ def sampled_function(variable: Expr, at: npt.ArrayLike | Any, values: npt.ArrayL
     """Return a function that is given by samples, or a spline of SciPy's, as an expression.
 
     The pieces are polynomials with the exact coefficients of the doubles that SciPy computes; between them Taylor's
-    method and DOP853 stop as at any kink, so that a potential from a table is integrated to round-off. Beyond the
-    first and the last sample the first and the last piece go on.
+    method and DOP853 stop as at any kink, so that a potential from a table is integrated to round-off.
+
+    Beyond the first and the last sample the first and the last piece go on, as SciPy's splines do that have
+    ``extrapolate=True``; others, which are periodic or end there, are refused. An event with
+    ``action="stop"`` ends a motion where it leaves the table.
 
     Parameters
     ----------
@@ -38,7 +41,8 @@ def sampled_function(variable: Expr, at: npt.ArrayLike | Any, values: npt.ArrayL
     Raises
     ------
     ValueError
-        The samples are too few, not in order, or not finite.
+        The samples are too few, not in order, or not finite; or the spline is something else beyond its ends than
+        its first and last piece.
 
     Examples
     --------
@@ -66,6 +70,7 @@ def _pieces(at: Any, values: Any) -> tuple[Array, Array]:
         spline: Any = PPoly.from_spline(at) if hasattr(at, "t") else at
         if not hasattr(spline, "c") or not hasattr(spline, "x"):
             raise TypeError(f"{at!r} is no spline of SciPy's: give one, or places and values of samples")
+        _check_goes_on(spline)
         if np.ndim(spline.c) != 2:
             raise ValueError("the spline has several values at a place: give one of them at a time")
         breaks, coefficients = np.asarray(spline.x, dtype=np.float64), np.asarray(spline.c, dtype=np.float64)
@@ -85,6 +90,22 @@ def _pieces(at: Any, values: Any) -> tuple[Array, Array]:
     if not (np.isfinite(breaks).all() and np.isfinite(coefficients).all()):
         raise ValueError("the spline has coefficients that are not finite")
     return breaks, coefficients
+
+
+def _check_goes_on(spline: Any) -> None:
+    """Refuse a spline that is not its first and last piece beyond its ends, as what is made of it would be."""
+    extrapolate = getattr(spline, "extrapolate", True)
+    if extrapolate == "periodic":
+        raise ValueError(
+            "the spline is periodic, and a function made of pieces has ends: give a table over as many periods as the "
+            "motion visits; or set spline.extrapolate = True where it stays within one"
+        )
+    if not extrapolate:
+        first, last = float(spline.x[0]), float(spline.x[-1])
+        raise ValueError(
+            f"the spline has extrapolate=False, no values beyond {first:g} … {last:g}: set spline.extrapolate = True, "
+            f'where its end pieces go on, and end the motion there, events=[Event(x - {last:g}, action="stop")]'
+        )
 
 
 def _polynomial(x: Any, coefficients: Array) -> Any:

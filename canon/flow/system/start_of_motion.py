@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,10 +19,45 @@ if TYPE_CHECKING:
     from canon.array import Array
     from canon.flow.equations.first_order_motion import FirstOrderMotion
 
-__all__ = ["check_constraints", "state_in_order"]
+__all__ = ["check_constraints", "read_by_labels", "state_in_order"]
 
 _NEAR = 1e-9
 """In parts of the size of its terms: what a constraint may miss at the start, being pulled back to 0."""
+
+
+def read_by_labels(y0: Any) -> Any:
+    """Return a pandas series or frame, or an xarray array, as numbers by its labels; other starts as they are.
+
+    A frame has a column or a row a variable. Where the labels are 0, 1, … the numbers stand in order.
+
+    Raises
+    ------
+    ValueError
+        The labels are other numbers.
+
+    Examples
+    --------
+    >>> import pandas
+    >>> read_by_labels(pandas.Series({"p_x": 0.0, "x": 1.0}))
+    {'p_x': 0.0, 'x': 1.0}
+    >>> read_by_labels(pandas.Series([1.0, 0.0]))
+    array([1., 0.])
+    """
+    if isinstance(y0, Mapping):
+        return y0  # pyright: ignore[reportUnknownVariableType]
+    table = y0.to_pandas() if hasattr(y0, "dims") and hasattr(y0, "to_pandas") else y0
+    if not (hasattr(table, "iloc") and hasattr(table, "index")):
+        return y0
+    for each in (table, table.T):
+        named = dict(each.items())
+        if not all(isinstance(label, Integral) for label in named):
+            return named
+    if list(table.index) != list(range(len(table))):
+        raise ValueError(
+            f"y0 has the labels {listed(list(map(str, table.index)))}, which are neither names of variables nor their "
+            "order: give it names as labels, or its numbers alone, y0.to_numpy()"
+        )
+    return table.to_numpy()
 
 
 def state_in_order(y0: Any, state: Sequence[Symbol]) -> Any:
@@ -49,7 +85,7 @@ def state_in_order(y0: Any, state: Sequence[Symbol]) -> Any:
     >>> state_in_order({"theta_dot": 0, theta: 0.1}, [theta, theta.dot])
     [0.1, 0]
     """
-    names = [s.name for s in state]
+    names, y0 = [s.name for s in state], read_by_labels(y0)
     if isinstance(y0, Mapping):
         return _by_name(y0, names)
     given = np.asarray(y0)

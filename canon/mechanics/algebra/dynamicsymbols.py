@@ -16,7 +16,16 @@ from canon.mechanics.algebra.substitution import exchanged
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
-__all__ = ["coordinate", "coordinate_symbols", "needs_plain", "plain", "plain_all", "plain_places"]
+__all__ = [
+    "check_none_is_the_time",
+    "check_none_reads_as_the_time",
+    "coordinate",
+    "coordinate_symbols",
+    "needs_plain",
+    "plain",
+    "plain_all",
+    "plain_places",
+]
 
 
 def coordinate(x: Any) -> Symbol:
@@ -82,6 +91,36 @@ def needs_plain(symbols: Collection[Any], t: Symbol = time) -> bool:
     """Tell whether SymPy's own time, ``dynamicsymbols._t``, is among symbols where another one is meant."""
     bare = Symbol(t.name)
     return bare != t and bare in symbols
+
+
+def check_none_is_the_time(variables: Sequence[Symbol], call: str, t: Symbol) -> None:
+    """Refuse a variable whose symbol is that of the time: nothing could tell which of them is meant.
+
+    Parameters
+    ----------
+    call
+        How the system is written, such as ``"Hamiltonian(H, q, p"``, to show where another time is given.
+
+    Examples
+    --------
+    >>> check_none_is_the_time([time], "PoissonSystem(H, x, structure", time)
+    Traceback (most recent call last):
+        ...
+    ValueError: the variable t is the symbol of the time too: give it another name, or the time another symbol, Pois...
+    """
+    if t not in variables:
+        return
+    other = next(name for name in ("s", "tau", "sigma") if name not in {x.name for x in variables})
+    raise ValueError(
+        f"the variable {t} is the symbol of the time too: give it another name, or the time another symbol, "
+        f"{call}, t=Symbol({other!r}, real=True))"
+    )
+
+
+def check_none_reads_as_the_time(variables: Sequence[Symbol], call: str, t: Symbol) -> None:
+    """Refuse the same, and a symbol without assumptions that :func:`plain` takes for the time by its name."""
+    for clock in (t, Symbol(t.name)):
+        check_none_is_the_time(variables, call, clock)
 
 
 def _rate_named(name: str, coordinates: Mapping[str, Symbol]) -> Symbol | None:

@@ -25,6 +25,7 @@ from canon.expression.symbols.user_input import (
     given_symbols,
 )
 from canon.mechanics.algebra.all_vanish import all_vanish, having_values
+from canon.mechanics.algebra.dynamicsymbols import check_none_is_the_time
 from canon.mechanics.algebra.jacobian import jacobian
 from canon.mechanics.algebra.linear import solve
 from canon.mechanics.algebra.potential import potential
@@ -89,6 +90,7 @@ class CanonicalTransformation:
         for name, given in (("new_q", new_q), ("new_p", new_p)):
             object.__setattr__(self, name, as_tuple(given))
         object.__setattr__(self, "t", given_kind(t, Symbol, "the time", "the domain comes before it"))
+        check_none_is_the_time((*self.q, *self.p), "CanonicalTransformation(q, p, new_q, new_p", t)
         object.__setattr__(self, "domain", as_domain(domain))
         lengths = {len(self.q), len(self.p), len(self.new_q), len(self.new_p)}
         if len(lengths) > 1:

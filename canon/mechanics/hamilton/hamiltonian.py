@@ -15,7 +15,13 @@ from canon.cached_property import cached_property
 from canon.expression.symbols.repeated_sum import sums_within
 from canon.expression.symbols.symbol import Rate, time
 from canon.expression.symbols.user_input import counted, given_expression
-from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain, plain_all, plain_places
+from canon.mechanics.algebra.dynamicsymbols import (
+    check_none_reads_as_the_time,
+    coordinate_symbols,
+    plain,
+    plain_all,
+    plain_places,
+)
 from canon.mechanics.hamilton.bracket import poisson_bracket
 
 if TYPE_CHECKING:
@@ -45,7 +51,8 @@ class Hamiltonian:
     Raises
     ------
     ValueError
-        Where the variables are not as many momenta as coordinates, all different, or H holds velocities.
+        Where the variables are not as many momenta as coordinates, all different, one is the time, or H holds
+        velocities.
 
     Examples
     --------
@@ -67,6 +74,7 @@ class Hamiltonian:
     ) -> None:
         object.__setattr__(self, "q", coordinate_symbols(q))
         object.__setattr__(self, "p", coordinate_symbols(p))
+        check_none_reads_as_the_time((*self.q, *self.p), "Hamiltonian(H, q, p", t)
         given = given_expression(H, "H")
         long = any(each.is_long for each in sums_within(given))
         object.__setattr__(self, "H", plain(given, (*self.q, *self.p), t, keep_sums=long))

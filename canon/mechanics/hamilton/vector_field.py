@@ -15,7 +15,7 @@ from canon.mechanics.hamilton.bracket import lie_bracket
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["VectorField", "hamiltonian_field"]
+__all__ = ["VectorField", "check_moves_in_time", "hamiltonian_field"]
 
 
 @dataclass(frozen=True)
@@ -79,6 +79,24 @@ class VectorField:
             raise ValueError(
                 f"the fields live on different coordinates, {self.x} and {other.x}; write both in the same"
             )
+
+
+def check_moves_in_time(field: VectorField, t: Symbol) -> None:
+    """Refuse to follow ẋ = X(x, t) where a variable is the time itself; as an operator such a field is none the worse.
+
+    Examples
+    --------
+    >>> from canon import time
+    >>> check_moves_in_time(VectorField([1], [time]), time)
+    Traceback (most recent call last):
+        ...
+    ValueError: the field's variable t is the symbol of the time too: write another one, such as coordinates('t'), ...
+    """
+    if t in field.x:
+        raise ValueError(
+            f"the field's variable {t} is the symbol of the time too: write another one, such as "
+            f"coordinates({t.name!r}), in the components and among the variables"
+        )
 
 
 def hamiltonian_field(H: Expr, q: Sequence[Symbol], p: Sequence[Symbol]) -> VectorField:

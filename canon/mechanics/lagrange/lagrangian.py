@@ -12,7 +12,7 @@ from sympy import Expr, Symbol
 from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import acceleration, time, time_derivative, velocity
 from canon.expression.symbols.user_input import counted
-from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain
+from canon.mechanics.algebra.dynamicsymbols import check_none_reads_as_the_time, coordinate_symbols, plain
 from canon.mechanics.algebra.linear import SingularMatrixError, solve
 from canon.mechanics.algebra.substitution import as_tuple, entry, exchanged
 
@@ -59,7 +59,7 @@ class Lagrangian:
     Raises
     ------
     ValueError
-        Where the forces do not match the coordinates, or L holds accelerations.
+        Where the forces do not match the coordinates, one of these is the time, or L holds accelerations.
 
     Examples
     --------
@@ -100,6 +100,7 @@ class Lagrangian:
             raise ValueError("no coordinates given; a system moves in at least one")
         if len({*symbols}) < len(symbols):
             raise ValueError(f"the coordinates {symbols} are not all different; every one moves on its own")
+        check_none_reads_as_the_time(symbols, "Lagrangian(L, q", t)
         given = _forces(forces, symbols)
         expressions = [plain(e, symbols, t) for e in (L, *given)]
         object.__setattr__(self, "L", expressions[0])

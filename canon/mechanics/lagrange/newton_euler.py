@@ -16,7 +16,7 @@ from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import acceleration, time, velocity
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.all_vanish import all_vanish
-from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain_all
+from canon.mechanics.algebra.dynamicsymbols import check_none_reads_as_the_time, coordinate_symbols, plain_all
 from canon.mechanics.algebra.linear import eliminate, solve
 from canon.mechanics.algebra.substitution import as_tuple, entry, exchanged
 from canon.mechanics.lagrange.appell import cross
@@ -134,6 +134,7 @@ class NewtonEuler:
         object.__setattr__(self, "q", coordinate_symbols(q))
         object.__setattr__(self, "reactions", coordinate_symbols(reactions))
         named = (*self.q, *self.reactions)
+        check_none_reads_as_the_time(named, "NewtonEuler(bodies, q, loads, reactions", t)
         object.__setattr__(self, "loads", tuple(_plain_load(load, named, t) for load in loads))
         object.__setattr__(self, "t", t)
         for load in self.loads:

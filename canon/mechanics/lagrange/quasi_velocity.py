@@ -18,7 +18,13 @@ from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import Rate, acceleration, time, velocity
 from canon.expression.symbols.user_input import counted, given_expression
 from canon.mechanics.algebra.all_vanish import all_vanish
-from canon.mechanics.algebra.dynamicsymbols import coordinate, coordinate_symbols, needs_plain, plain
+from canon.mechanics.algebra.dynamicsymbols import (
+    check_none_reads_as_the_time,
+    coordinate,
+    coordinate_symbols,
+    needs_plain,
+    plain,
+)
 from canon.mechanics.algebra.linear import eliminate, solve, solve_affine
 from canon.mechanics.algebra.substitution import as_tuple, entry, exchanged, substitute
 
@@ -76,6 +82,7 @@ class Kinematics:
         object.__setattr__(self, "q", tuple(coordinate(s) for s in q))
         natural = tuple(velocity(s) for s in self.q)
         object.__setattr__(self, "u", natural if u is None else tuple(coordinate(w) for w in u))
+        check_none_reads_as_the_time((*self.q, *self.u), "Kinematics(q, u, q_dot", t)
         object.__setattr__(self, "t", t)
         rates = self.u if q_dot is None else tuple(self.plain(f) for f in as_tuple(q_dot))
         object.__setattr__(self, "q_dot", rates)

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from canon.array import Array
     from canon.flow.task import Task
     from canon.flow.trajectory import Trajectory
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = ["ErrorSeries", "error_series", "series_of_parts"]
 
@@ -200,17 +201,27 @@ def _energy_at(task: Task, orbit: int, t: float, y: Array) -> float:
 
 
 def _sizes_of_terms(motion: Trajectory, orbit: int) -> Array:
-    """Return Σ|y ∂H/∂y| at some states: what rounding each y by a part u of it does to H, in parts of u."""
-    system = motion.record.task.system
-    nodes = (*system.force, *system.velocity)
-    places = np.unique(np.linspace(0, len(motion.t) - 1, LOOKED_AT).astype(int))
-    states = motion.y[:, places, orbit] if motion.y.ndim == 3 else motion.y[:, places]
-    if len(states) != len(system.inputs) - 1:
+    """Return Σ|y ∂H/∂y| at some states: what rounding each y by a part u of it does to H, in parts of u.
+
+    Where forces do work, H is the energy less the work W, which is one of the y: it is rounded as they are.
+    """
+    system, moving, whole = motion.record.task.system, motion.record.moving, motion.record.whole.y
+    works = moving is not None and moving.work is not None
+    if system.varying > works:
         return np.zeros(1)  # parameters vary from orbit to orbit, and are no part of y
+    places = np.unique(np.linspace(0, len(motion.t) - 1, LOOKED_AT).astype(int))
+    states = whole[:, places, orbit] if whole.ndim == 3 else whole[:, places]
     point = dict(zip(system.inputs, (*states, motion.t[places]), strict=True))
-    slopes = system.graph.evaluate(nodes, point, FLOAT64)
+    slopes = system.graph.evaluate(_slopes_of_energy(system), point, FLOAT64)
     terms = [np.abs(y * np.asarray(slope)) for y, slope in zip(states, slopes, strict=True)]
     return np.sum(terms, axis=0)
+
+
+def _slopes_of_energy(system: HamiltonEquations) -> tuple[int, ...]:
+    """Return the nodes of ∂H/∂y but for signs; Hamilton's equations have them."""
+    if system.canonical:
+        return (*system.force, *system.velocity)
+    return tuple(system.graph.gradient(system.hamiltonian, (*system.q, *system.p)))
 
 
 def _way(motion: Trajectory) -> str:

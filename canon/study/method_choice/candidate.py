@@ -33,6 +33,7 @@ from canon.mechanics.hamilton.poisson_system import PoissonSystem
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 from canon.study.method_choice.error_law import expected_error, order_of
 from canon.study.method_choice.pilot_run import Pilot, pilot, seconds_per_time
+from canon.study.method_choice.resolution import least_error
 
 if TYPE_CHECKING:
     from canon.flow.method.method import Method
@@ -93,7 +94,8 @@ class Candidate:
     note
         What else there is to say.
     seen
-        Duration of the longest pilot run behind this; the whole span where the error was seen and not extrapolated.
+        Duration of the longest pilot run behind this; the whole span where the error was seen and not extrapolated, 0
+        where the setting itself was not tried.
     """
 
     method: Method
@@ -282,6 +284,7 @@ def tried_with(
         for since, y0 in question.elsewhere:
             later = pilot(question.moved(since, y0), setting, min(span, question.span - since))
             error = max(error, expected_error(later, question.span, question.observable))
+    error = max(error, least_error(setting.arithmetic))
     if like is not None and math.isfinite(like.error) and setting.method.engine.takes_step:
         return TriedSetting(found, error, like.cost * _work(found) / _work(like.pilot))
     try:
@@ -311,11 +314,12 @@ def by_order(question: Question, tried: TriedSetting, accuracy: float) -> Candid
         found,
         step=None if setting.step is None else knob,
         tolerance=None if setting.tolerance is None else knob,
-        predicted_error=MARGIN * accuracy,
+        predicted_error=max(MARGIN * accuracy, least_error(setting.arithmetic)),
         predicted_cost=found.predicted_cost * share,
         evaluations=found.evaluations * share,
         keeps=True,
         note="by its order, not tried",
+        seen=0.0,
     )
 
 

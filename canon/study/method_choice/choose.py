@@ -21,6 +21,7 @@ from canon.study.method_choice.choice_question import Question
 from canon.study.method_choice.choice_table import answer, choice_table
 from canon.study.method_choice.confirm import confirmed, double_instead
 from canon.study.method_choice.pilot_run import error_seen, natural_step, require_energy
+from canon.study.method_choice.resolution import least_error
 from canon.study.method_choice.slow_times import Outlook, with_outlook
 from canon.study.method_choice.step_search import searched
 from canon.study.motion.extended_phase_space import driven
@@ -330,8 +331,11 @@ def _in_higher_precision(
             continue
         if question.observable == "position":  # beyond these no reference is better
             ladder = ladder[:1]
+        cheapest = min((each.predicted_cost for each in found if each.keeps), default=math.inf)
         for precision in ladder:
-            each = searched(question, method, precision, pilot_span / 8.0, natural, accuracy, math.inf)
+            if accuracy < least_error(precision) and (method.engine.takes_step or precision != ladder[-1]):
+                continue
+            each = searched(question, method, precision, pilot_span / 8.0, natural, accuracy, cheapest)
             found.append(each)
             if each.keeps:
                 break

@@ -56,7 +56,7 @@ def double_instead(question: Question, chosen: Candidate, span: float, accuracy:
 
 def confirmed(question: Question, chosen: Candidate, span: float, accuracy: float) -> Candidate:
     """Return the candidate after a longer look: at resonance, and at an error that grows late."""
-    if question.span <= span:
+    if chosen.seen >= question.span:
         return chosen
     longer = _longer(question, chosen, span)
     setting, resonant = chosen.setting, False
@@ -71,11 +71,17 @@ def confirmed(question: Question, chosen: Candidate, span: float, accuracy: floa
             factor = (MARGIN * accuracy / tried.error) ** (1.0 / order) if tried.error < math.inf else 0.5
             setting = setting.turned(setting.knob * min(NEIGHBOUR, max(factor, SHORTEST_STRIDE)))
         elif setting.knob > tolerance_at(last_rung(setting.arithmetic)):
-            setting = setting.turned(setting.knob * math.exp(-2.0))  # one order of Taylor's method
+            setting = setting.turned(_smaller_tolerance(setting, tried.error / (share * accuracy)))
         else:
             break
         tried = tried_with(question, setting, longer)
     return replace(candidate_of(question, tried, accuracy), resonant=resonant)
+
+
+def _smaller_tolerance(setting: Setting, excess: float) -> float:
+    """Return a tolerance that is smaller by whole orders of Taylor's method, as many as an error is too large by."""
+    orders = max(1, math.ceil(math.log(excess) / 2.0)) if excess < math.inf else 1
+    return max(tolerance_at(last_rung(setting.arithmetic)), setting.knob * math.exp(-2.0 * orders))
 
 
 def _longer(question: Question, chosen: Candidate, span: float) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from canon.flow.method.energy_keeping_method import AverageVectorField
@@ -21,6 +22,7 @@ from canon.study.method_choice.candidate import (
     tried_with,
 )
 from canon.study.method_choice.error_law import order_of
+from canon.study.method_choice.resolution import least_error
 from canon.study.method_choice.tolerance_search import searched_tolerance
 
 if TYPE_CHECKING:
@@ -66,6 +68,9 @@ DISTURBED_ORDER = 8
 """Order with which the first step of a splitting by solvable parts is guessed: that of the terms linear in the
 disturbance, 2n for SABA_n. It is only where the search begins."""
 
+FINEST = 2.0
+"""How many times the least error of the numbers is aimed at where less was asked than they resolve."""
+
 STAGES_A_STEP, GAUSS_STAGES_A_STEP = 16.0, 6.0
 """By how many stages the widest step grows by one of Taylor's, of explicit methods and of Gauss's: a rule of thumb, by
 which the search begins and steps in a fictitious time end."""
@@ -93,6 +98,11 @@ def searched(
     cheapest
         Cost of the best candidate so far: the search ends where a method can't come near it.
     """
+    least = least_error(precision)
+    if accuracy < least:
+        finest = searched(question, method, precision, span, natural, FINEST * least, cheapest)
+        note = f"{precision} numbers resolve no error below {least:.1e}"
+        return replace(finest, keeps=False, note=finest.note if math.isinf(finest.predicted_error) else note)
     if not method.engine.takes_step:
         if _least_in_python(method, question.span, natural) > HOPELESS * cheapest:
             return nothing(Setting(method, precision=precision), "dearer at any tolerance")

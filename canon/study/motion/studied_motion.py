@@ -10,7 +10,7 @@ import numpy as np
 
 from canon.flow.system.parameter_values import SpareParameters
 from canon.flow.system.scene_as_system import is_scene, opened
-from canon.flow.system.start_of_motion import state_in_order
+from canon.flow.system.start_of_motion import read_by_labels, state_in_order
 from canon.flow.system_request import is_hamiltonian
 from canon.scene import find
 from canon.scene.scene import Scene
@@ -132,6 +132,7 @@ def _state_of(system: Any, y0: ArrayLike | Mapping[Any, Any] | str | None) -> ND
         raise StudyError(
             "a system that is no scene has no starts of its own: give the initial state as numbers"
         )
+    y0 = read_by_labels(y0)
     if isinstance(y0, Mapping):
         return np.asarray(state_in_order(y0, variables_of(system)[0]), dtype=np.float64)
     return np.asarray(y0, dtype=np.float64)

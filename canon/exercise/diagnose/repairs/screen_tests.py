@@ -339,7 +339,8 @@ def _laws(reading: Reading) -> list[Expr]:
         return [velocity(x) - f for x, f in motion_of(reading).items()]
     q = reading.symbols("q")
     forces = reading.expressions("Qnc", like="q") if reading.has("Qnc") else (sp.S.Zero,) * len(q)
-    return [e - Q for e, Q in zip(Lagrangian(reading.expression("L"), q).equations, forces, strict=True)]
+    equations = Lagrangian(reading.expression("L"), q, t=reading.time).equations
+    return [e - Q for e, Q in zip(equations, forces, strict=True)]
 
 
 def _left_over(
