@@ -83,3 +83,14 @@ def test_a_choice_reads_labels_too():
         1.0,
         0.0,
     ]
+
+
+@pytest.mark.parametrize("kind", ["momentum", "ddot"])
+def test_a_force_in_momenta_or_accelerations_is_refused_with_what_to_write(kind):
+    """With a number for it, as for a parameter, the motion would be that under a constant force."""
+    (q,) = (coordinates("x"),)
+    held = getattr(q, kind)
+    system = Lagrangian(q.dot**2 / 2, [q], forces=[-held])
+    for given in ({}, {held: 1.0}, {held.name: 1.0}):
+        with pytest.raises(ValueError, match=f"the system holds {held}, which is no parameter"):
+            propagate(system, (0, 1), [1, 1], parameters=given)

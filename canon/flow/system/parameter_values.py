@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import sympy as sp
 
+from canon.expression.symbols.symbol import Momentum, Rate
 from canon.frozen_mapping import FrozenMapping
 from canon.kernel.program.hamilton_equations import exact_number
 from canon.mechanics.algebra.substitution import symbols_within
@@ -56,7 +57,8 @@ def check_parameters(
     KeyError
         A parameter has no number, or a number is for no parameter.
     ValueError
-        A name is given twice, is that of a variable, or its number is not what the symbol is said to be.
+        A name is given twice, is that of a variable, or its number is not what the symbol is said to be; or what needs
+        one is a momentum or an acceleration.
 
     Examples
     --------
@@ -66,6 +68,8 @@ def check_parameters(
         ...
     ValueError: m = -1.0, but m was made as a positive symbol: give a positive number
     """
+    needed = tuple(needed)
+    _check_none_moves(needed)
     known = {s.name: s for s in (*others, *needed)}
     check_given(parameters, known.values(), variables)
     check_known(parameters, known.values())
@@ -73,6 +77,16 @@ def check_parameters(
     missing = sorted(name for name in known if name not in seen)
     if missing:
         raise KeyError(f"no number for {', '.join(missing)}: give each one, parameters={{symbol: value}}")
+
+
+def _check_none_moves(needed: Sequence[Symbol]) -> None:
+    """Refuse momenta and accelerations that a system is written in beside its variables, as in a force −p_x."""
+    moving = sorted(str(s) for s in needed if isinstance(s, Momentum | Rate))
+    if moving:
+        raise ValueError(
+            f"the system holds {', '.join(moving)}, which is no parameter and none of its variables: write L, forces and "
+            "constraints in q, q̇ and t (a momentum p_x as ∂L/∂x_dot; the kinetic energy of what is dragged along into L)"
+        )
 
 
 def check_known(parameters: Mapping[Symbol | str, Any], symbols: Iterable[Any]) -> None:
@@ -102,7 +116,8 @@ def check_given(
     Raises
     ------
     ValueError
-        A name is given twice, is that of a variable, or its number is not what the symbol is said to be.
+        A name is given twice, is that of a variable, or its number is not what the symbol is said to be; or what needs
+        one is a momentum or an acceleration.
     """
     known = {s.name: s for s in symbols}
     moving, seen = {s.name for s in variables}, set[str]()
