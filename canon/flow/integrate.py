@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from canon.flow.kinked.regimes import kinks_of
 from canon.flow.method.engine import FICTITIOUS_TIME, FIXED_STEPS, HEYOKA, SCIPY, Engine
 from canon.flow.method.number_formats import fixed_precision
 from canon.flow.run.event import prepared_events
@@ -116,15 +117,19 @@ def _in_fixed_steps(
 def _by_heyoka(
     task: Task, method: Taylor, progress: Callable[[float], None], so_far: Samples | None
 ) -> Samples:
+    from canon.flow.adaptive.branch_points import branch_points, check_branch_points
     from canon.flow.adaptive.taylor_motion import taylor_motion
 
-    states, events = _states(task, so_far), prepared_events(task.system, task.events)
+    system, states, events = task.system, _states(task, so_far), prepared_events(task.system, task.events)
     precision, dense = task.precision or method.engine.usual_precision, task.dense
+    alone = states[0].shape[1] == 1 and kinks_of(system) is None
+    begin = float(task.plan.last(0 if so_far is None else len(so_far.t) - 1))
+    branches = branch_points(system, states[0][:, 0], begin) if alone else ()
     made = taylor_motion(
-        task.system, states, task.plan, method, precision, progress, so_far, events, dense=dense,
+        system, states, task.plan, method, precision, progress, so_far, (*events, *branches), dense=dense,
         max_step=task.max_step,
     )  # fmt: skip
-    return joined(so_far, made)
+    return joined(so_far, check_branch_points(branches, made, system.rows))
 
 
 def _by_scipy(

@@ -84,8 +84,8 @@ def _check_none_moves(needed: Sequence[Symbol]) -> None:
     moving = sorted(str(s) for s in needed if isinstance(s, Momentum | Rate))
     if moving:
         raise ValueError(
-            f"the system holds {', '.join(moving)}, which is no parameter and none of its variables: write L, forces and "
-            "constraints in q, q̇ and t (a momentum p_x as ∂L/∂x_dot; the kinetic energy of what is dragged along into L)"
+            f"the system holds {', '.join(moving)}, which is no parameter and none of its variables: write L, forces "
+            "and constraints in q, q̇ and t (a momentum p_x as ∂L/∂x_dot; what is dragged along as kinetic energy in L)"
         )
 
 

@@ -1,0 +1,53 @@
+"""Roots that come down to zero: the Taylor method does not go on by the other root."""
+
+import numpy as np
+import pytest
+from sympy import Rational, sqrt, symbols
+
+from canon import Event, Hamiltonian, VectorField, coordinates, propagate
+from canon.flow import NonFiniteStateError
+
+u, v = symbols("u v", real=True)
+DRAINING = VectorField([-sqrt(u)], [u])
+
+
+@pytest.mark.parametrize("end", [2.5, 2.9, 3, 3.1, 4, 6])
+@pytest.mark.parametrize("precision", ["double", "quad"])
+def test_a_tank_that_is_empty_does_not_fill_again(end, precision):
+    """Torricelli: u = (1 − t/2)² until t = 2."""
+    with pytest.raises(NonFiniteStateError) as lost:
+        propagate(DRAINING, (0, end), [1.0], precision=precision)
+    assert lost.value.time == pytest.approx(2, abs=1e-6)
+    assert abs(lost.value.state[0]) < 1e-12
+
+
+def test_the_same_of_functions_several_variables_and_backwards():
+    with pytest.raises(NonFiniteStateError, match="sqrt"):
+        propagate(lambda t, y: -np.sqrt(y), (0, 3), [1.0])
+    two = VectorField([-sqrt(u), -(v ** Rational(3, 2)) + u], [u, v])
+    with pytest.raises(NonFiniteStateError, match=r"sqrt\(u\) comes down to zero"):
+        propagate(two, (0, 3), [1.0, 1.0])
+    with pytest.raises(NonFiniteStateError, match="after t = -2 "):
+        propagate(VectorField([sqrt(u)], [u]), (0, -3), [1.0])
+
+
+def test_before_it_and_at_an_event_there_all_is_well():
+    before = propagate(DRAINING, (0, 1.9), [1.0])
+    assert before.final[0] == pytest.approx(0.05**2, rel=1e-12)
+    assert before.events == ()
+    stopped = propagate(DRAINING, (0, 3), [1.0], events=[Event(u - Rational(1, 4), action="stop")])
+    assert stopped.t[-1] == pytest.approx(1, rel=1e-14)
+    half = propagate(DRAINING, (0, 1), [1.0])
+    assert half.resume(1.9).final[0] == pytest.approx(0.05**2, rel=1e-12)
+    with pytest.raises(NonFiniteStateError):
+        half.resume(3)
+
+
+def test_roots_that_stay_positive_are_no_branch_points():
+    x = coordinates("x")
+    bowl = Hamiltonian(x.momentum**2 / 2 - sqrt(4 - x**2), [x], [x.momentum])
+    motion = propagate(bowl, (0, 100), [1.5, 0.3])
+    assert motion.events == ()
+    assert abs(motion.energy_error).max() < 1e-14
+    relativistic = Hamiltonian(sqrt(1 + x.momentum**2) + x**2 / 2, [x], [x.momentum])
+    assert abs(propagate(relativistic, (0, 100), [1.5, 0.3]).energy_error).max() < 1e-14
