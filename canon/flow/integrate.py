@@ -117,8 +117,8 @@ def _in_fixed_steps(
 def _by_heyoka(
     task: Task, method: Taylor, progress: Callable[[float], None], so_far: Samples | None
 ) -> Samples:
-    from canon.flow.adaptive.branch_points import branch_points, check_branch_points
     from canon.flow.adaptive.taylor_motion import taylor_motion
+    from canon.flow.kinked.branch_points import branch_points, check_branch_points
 
     system, states, events = task.system, _states(task, so_far), prepared_events(task.system, task.events)
     precision, dense = task.precision or method.engine.usual_precision, task.dense

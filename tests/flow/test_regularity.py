@@ -1,9 +1,10 @@
 """Verdicts on orbits: what is said where the motion is not the system's, and in which order exponents come."""
 
 import numpy as np
-from sympy import sqrt
+import pytest
+from sympy import sqrt, symbols
 
-from canon import Hamiltonian, Splitting, coordinates
+from canon import Hamiltonian, Splitting, VectorField, coordinates
 from canon.flow import (
     LiePoissonSplitting,
     Regularity,
@@ -39,3 +40,14 @@ def test_exponents_fall():
     )
     assert (np.diff(found.exponents) <= 0).all()
     assert found.largest == found.exponents[0]
+
+
+def test_vector_fields_have_exponents():
+    """Of a damped oscillator both are −c/2, of van der Pol's one is 0."""
+    x, y = symbols("x y", real=True)
+    damped = lyapunov_spectrum(VectorField([y, -x - y / 10], [x, y]), (0, 300), [1.0, 0.5])
+    assert damped.exponents == pytest.approx([-0.05, -0.05], abs=2e-3)
+    assert (
+        lyapunov_spectrum(VectorField([y, -x + (1 - x**2) * y], [x, y]), (0, 300), [1.0, 0.5]).exponents[1]
+        < -0.5
+    )

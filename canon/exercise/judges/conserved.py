@@ -10,12 +10,14 @@ from sympy import Expr, Symbol
 
 from canon.exercise.judges.energy_and_force import shown_short
 from canon.exercise.question.continuous_answer import constants_are_continuous
+from canon.exercise.question.deadline import SIDE_SECONDS
 from canon.exercise.question.jumping_system import check_kept_at_jumps
 from canon.exercise.question.question import Differ, Part, Question, Same, Tells
 from canon.expression.symbols.symbol import acceleration, velocity
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.domain.verdict import Undecided
+from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -51,12 +53,14 @@ def conserved_or_not(reading: Reading) -> Iterator[Question]:
             if I.has(*(s for s in _accelerations(reading) if s not in rates)):
                 reading.fault(f"{key}[{i}]", "should depend on the state and the time only")
             (rate,) = rate_of(I)
-            check_kept_at_jumps(I, mechanical_system(reading), reading.domain)
             if key == "conserved":
                 yield Same((Part(f"d/dt ({I})", rate),), reading.domain, said=_not_conserved)
+                check_kept_at_jumps(I, mechanical_system(reading), reading.domain)
                 yield from constants_are_continuous(I, state, reading.domain, rate_of, system_of(reading))
             else:
                 _check_continuous(I, state, reading.domain, rate_of)
+                if vanishes_off_kinks(rate, reading.domain, SIDE_SECONDS).holds:
+                    check_kept_at_jumps(I, mechanical_system(reading), reading.domain)
                 why = f"{I} is conserved: its rate vanishes on every motion"
                 yield Differ(Part(f"d/dt ({I})", rate), reading.domain, why)
         yield Tells((same_everywhere(quantities, tuple(rates), reading.domain),), NOT_OF_THE_STATE)
@@ -89,11 +93,8 @@ def _check_continuous(
 
 
 def system_of(reading: Reading) -> tuple[Expr, ...]:
-    """Return the functions that give a system: H, L or the components of X."""
-    for key in ("H", "L"):
-        if reading.has(key):
-            return (reading.expression(key),)
-    return reading.expressions("X") if reading.has("X") else ()
+    """Return the function that gives a system, H or L; a motion is continuous where the components of X jump."""
+    return tuple(reading.expression(key) for key in ("H", "L") if reading.has(key))[:1]
 
 
 def mechanical_system(reading: Reading) -> Hamiltonian | Lagrangian | None:

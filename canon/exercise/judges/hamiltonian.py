@@ -78,12 +78,12 @@ def _solution(reading: Reading, system: Hamiltonian) -> Iterator[Question]:
             reading.fault(f"solution.{z}", f"should depend on {system.t} and parameters only")
     yield from motion_is_real(motion, reading.domain)
     domain = transported(reading.domain, motion)
-    check_motion_at_jumps(motion, system, domain, reading.domain)
     rates = zip((*system.q, *system.p), system.vector_field, strict=True)
     parts = (
         Part(f"the equation of {z}", motion[z].diff(system.t), substitute(rate, motion)) for z, rate in rates
     )
     yield Same(tuple(parts), domain)
+    check_motion_at_jumps(motion, system, domain, reading.domain)
     yield from motion_is_continuous(motion, domain, [system.H], system.t, velocities=False)
 
 
@@ -99,8 +99,8 @@ def constant_of_motion(reading: Reading) -> Iterator[Question]:
     branches = on_manifold(restrictions, reading.domain)
     for branch in branches:
         there = substitute(I, branch.values)
-        check_kept_at_jumps(there, mechanical_system(reading), branch.domain)
         yield Same((Part("dI/dt", *rate_of(I), through=branch.values),), branch.domain)
+        check_kept_at_jumps(there, mechanical_system(reading), branch.domain)
         yield from constants_are_continuous(there, (*rates, t), branch.domain, rate_of, system_of(reading))
     trivial = tuple(same_everywhere((I,), tuple(rates), b.domain, b.values) for b in branches)
     yield Tells(trivial, "it follows from `restrict` alone" if restrictions else NOT_OF_THE_STATE)

@@ -18,7 +18,7 @@ from canon.exercise.question.answer import stay_open
 from canon.exercise.question.deadline import SIDE_SECONDS, Deadline
 from canon.exercise.question.implicit_point import refuted_at_a_point
 from canon.exercise.question.question import TELLING, Determines, Part, Question, Same, Stated, decide, fails
-from canon.expression.symbols.symbol import velocity
+from canon.expression.symbols.symbol import Rate, velocity
 from canon.expression.text.open_readings import is_angle
 from canon.mechanics.algebra.constraint_manifold import EmptyDomainError, check_not_empty, on_manifold
 from canon.mechanics.algebra.solve_for_symbol import named
@@ -99,8 +99,7 @@ def leaving_condition(reading: Reading) -> Iterator[Question]:
     multipliers = tuple(sp.Dummy(f"lam{i}", real=True) for i in range(1 + len(others)))
     (leaves,) = reading.equations("leaves")
     deadline = Deadline.after(0.8 * reading.claim.budget)
-    met = False
-    elsewhere: list[str] = []
+    met, elsewhere = list[dict[Symbol, Expr]](), list[tuple[dict[Symbol, Expr], str]]()
     for motion in _motions(reading, (contact, *others), multipliers, (leaves,)):
         force = sp.cancel(sp.together(motion.solution[multipliers[0]]))
         claimed = motion.along(leaves)
@@ -108,17 +107,24 @@ def leaving_condition(reading: Reading) -> Iterator[Question]:
             yield fails(TELLING, "this says nothing about the motion: it holds all along the contact")
             return
         if claimed.is_nonzero or proved_sign(claimed, motion.branch.domain) in ("+", "-"):
-            elsewhere += [f"the motion with {v} = {shown_short(f)}" for v, f in motion.branch.values.items()]
+            elsewhere.append(_place_and_sense(motion))
             continue
-        met = True
+        met.append(_place_and_sense(motion)[0])
         q = reading.symbols("q")
         verdict = _same_zeros(force, claimed, motion.branch, q, deadline)
         if verdict.fails and (place := _place_of_an_angle(leaves, force, q)) is not None:
             verdict = _same_zeros(force, motion.along(place), motion.branch, q, deadline)
         yield Stated(verdict, lambda force=force: f"the reaction {shown_short(sp.factor_terms(force))} = 0")
-    if not met:
+    if not met or any(place not in met for place, _ in elsewhere):
         reading.fault("leaves", "holds nowhere along the contact")
-    yield Determines(lambda: stay_open(elsewhere))
+    yield Determines(lambda: stay_open([sense for _, sense in elsewhere]))
+
+
+def _place_and_sense(motion: MotionOnManifold) -> tuple[dict[Symbol, Expr], str]:
+    """Return where a motion is, and in words which way it goes."""
+    place = {s: f for s, f in motion.branch.values.items() if not isinstance(s, Rate)}
+    senses = [f"{s} = {shown_short(f)}" for s, f in motion.branch.values.items() if s not in place]
+    return place, f"the motion with {', '.join(senses)}"
 
 
 def _force_is_the_rest(reading: Reading, constraints: Sequence[Expr], multipliers: Sequence[Symbol]) -> bool:

@@ -15,7 +15,7 @@ from canon.exercise.judges.energy_and_force import shown_short
 from canon.exercise.judges.invariance import is_instead
 from canon.exercise.question.answer import stay_open
 from canon.exercise.question.continuous_answer import is_continuous
-from canon.exercise.question.jumping_system import check_motion_at_jumps
+from canon.exercise.question.jumping_system import check_has_no_jumps, check_motion_at_jumps
 from canon.exercise.question.question import Determines, Part, Question, Regular, Same, fails
 from canon.expression.symbols.symbol import Rate, acceleration, time_derivative, velocity
 from canon.expression.symbols.user_input import counted
@@ -63,10 +63,10 @@ def _of_functions(reading: Reading) -> Iterator[Question]:
         if _second_order(reading):
             motion |= {velocity(x): value.diff(t), acceleration(x): value.diff(t, 2)}
     domain = transported(reading.domain, motion)
-    if not reading.has("equations"):
-        check_motion_at_jumps(motion, mechanical_system(reading), domain, reading.domain)
     parts = tuple(Part(name, substitute(e, motion)) for name, e in _equations(reading, motion))
     yield Same(parts, domain, _no_answer, _left_over)
+    if not reading.has("equations"):
+        check_motion_at_jumps(motion, mechanical_system(reading), domain, reading.domain)
     yield from _initial(reading, {x: motion[x] for x in state if x in motion}, t)
     if reading.has("constants"):
         values = [motion[x] for x in _ordered(state)]
@@ -130,6 +130,8 @@ def _of_rates(reading: Reading) -> Iterator[Question]:
     domain = transported(reading.domain, motion)
     parts = tuple(Part(name, substitute(e, motion)) for name, e in _equations(reading, motion))
     yield Same(parts, domain, _no_answer, _left_over)
+    if not reading.has("equations"):
+        check_has_no_jumps(mechanical_system(reading), reading.domain)
     for x, rate in rates.items():
         yield is_continuous(rate, (*q, t), domain, f"{velocity(x)} = {rate}")
     if reading.has("initial"):

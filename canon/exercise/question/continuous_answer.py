@@ -67,7 +67,7 @@ def constants_are_continuous(
         )
         yield fails(f"{I} is a constant of the motion", why, I)
         return
-    kept = None if verdict.holds else _kept_border(I, state, domain, rates)
+    kept = None if verdict.holds else _kept_border(I, state, domain, rates, given)
     if kept is None:
         yield verdict
         return
@@ -79,11 +79,21 @@ def constants_are_continuous(
 
 
 def _kept_border(
-    I: Expr, state: Sequence[Symbol], domain: Domain, rates: Callable[[Expr], Sequence[Expr]]
+    I: Expr,
+    state: Sequence[Symbol],
+    domain: Domain,
+    rates: Callable[[Expr], Sequence[Expr]],
+    given: Sequence[Expr],
 ) -> Expr | None:
-    """Return what vanishes where I may jump and is a constant of the motion itself."""
+    """Return what vanishes where I may jump and is a continuous constant of the motion; None of a system that jumps."""
+    if any(not cut.bends and proved_sign(cut.gap, domain) == "" for f in given for cut in cuts_of(f, state)):
+        return None
     for cut in cuts_of(I, state):
         open_ = not cut.bends and proved_sign(cut.gap, domain) == ""
-        if open_ and vanishes(sp.Matrix(rates(cut.gap)), domain, PROOF_SECONDS).holds:
+        if (
+            open_
+            and vanishes(sp.Matrix(rates(cut.gap)), domain, PROOF_SECONDS).holds
+            and continuity(cut.gap, state, domain, PROOF_SECONDS, angles=False).holds
+        ):
             return cut.gap
     return None

@@ -84,14 +84,13 @@ def _orbit(
 ) -> Samples:
     """Integrate one orbit with SciPy's DOP853 on the compiled right-hand side, through its events and kinks."""
     terms, started = longest_step(system), time.thread_time()
-    half = method.tolerance / 2  # SciPy takes the sum of the relative and of the absolute one
     states = np.empty((len(y0), len(times)))
     states[:, 0] = y0
     orbit = WatchedOrbit(
         system,
         kinks,
         events,
-        (max(half, _LEAST), half),
+        (max(method.tolerance, _LEAST), method.tolerance),
         1 if times[-1] > times[0] else -1,
         lambda t, y: min(max_step, terms(t, y)),
         float(times[0]),

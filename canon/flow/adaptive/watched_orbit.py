@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.cached_property import cached_property
-from canon.flow.adaptive.component_sizes import time_and_sizes
+from canon.flow.adaptive.component_sizes import sizes_of
 from canon.flow.adaptive.zeros_in_step import TooFastError, Zero, zeros_in_step
 from canon.flow.kinked.next_regime import passage, signs_at_start
 from canon.flow.kinked.place import Place
@@ -35,9 +35,6 @@ _NEWTON = 6
 
 _AT_ONCE = 2.0**-40
 """In parts of a function's size: one that vanishes where another event is met."""
-
-_ORDER, _SURE = 8, 0.01
-"""The method's order, and in tolerances what its first step misses if the time scale of the motion is as it seems."""
 
 _ROUNDING = 2.0**-44
 """In parts of a function's size, what rounding and the interpolant's may make of one that vanishes."""
@@ -116,14 +113,14 @@ class WatchedOrbit:
         integrator.max_step = self.longest(before, kept)
         message = integrator.step()
         self._sizes = np.fmax(self._sizes, abs(integrator.y))
-        integrator.atol = self.tolerances[1] * self._sizes
+        integrator.atol = self.tolerances[1] * sizes_of(self.system, self._sizes)
         self.steps += 1
         if integrator.status == "failed" or not np.isfinite(integrator.y).all():
             raise _lost(before, kept[self.system.rows], message)
 
     def go(self, times: Array, states: Array, progress: Callable[[float], None]) -> None:
         """Put the states at the times after the first into their columns; ``sampled`` says how many are there."""
-        in_a_row, size = 0, self._measured(float(times[-1]))
+        in_a_row, size = 0, None
         while self.sampled < len(times) and not self.stopped:
             begun, integrator = self.t, self._integrator(self.t, self.y, float(times[-1]), size)
             met, before, kept = None, self.t, self.y
@@ -143,18 +140,6 @@ class WatchedOrbit:
             if in_a_row > _PILE:
                 lost = self._error("events pile up there; stop the motion before")
                 raise PiledUpError(str(lost), lost.time, lost.state)
-
-    def _measured(self, end: float) -> float:
-        """Find the sizes of the state's components, and return the length of the first step."""
-        rate, (relative, _) = self._watch().rate.call, self.tolerances
-
-        def counted(t: float, y: Array) -> Array:
-            self.evaluations += 1
-            return rate(t, y)
-
-        found = time_and_sizes(counted, self.t, self.y, end - self.t, relative)
-        self._sizes = found.sizes
-        return found.time * (_SURE * relative) ** (1 / _ORDER)
 
     def _sample(self, times: Array, states: Array, interpolant: _Interpolant, until: float) -> None:
         """Put the states at the times of a step into their columns."""
@@ -380,7 +365,7 @@ class WatchedOrbit:
             folded,
         )
 
-    def _integrator(self, t: float, y: Array, end: float, first: float) -> Any:
+    def _integrator(self, t: float, y: Array, end: float, first: float | None) -> Any:
         from scipy import integrate
 
         relative, absolute = self.tolerances
@@ -392,8 +377,8 @@ class WatchedOrbit:
             y,
             end,
             rtol=relative,
-            atol=absolute * self._sizes,
-            first_step=min(first, abs(end - t)) or None,
+            atol=absolute * sizes_of(self.system, self._sizes),
+            first_step=None if first is None else min(first, abs(end - t)) or None,
         )
 
     def _place(self) -> Place:

@@ -254,7 +254,8 @@ def deviation_growth(
 
 def _energy_error(task: Task, last: Array) -> Array:
     system, first = task.system, task.states[0]
-    if not system.autonomous or system.kicked or system.spare:
+    of_one_kind = system.autonomous and not (system.kicked or system.spare or system.varying)
+    if not of_one_kind or system.graph.is_constant(system.hamiltonian):
         return np.zeros(first.shape[1])
     begin, end = (float(task.plan.instants[k]) for k in (0, -1))
     with np.errstate(all="ignore"):

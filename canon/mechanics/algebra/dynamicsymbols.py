@@ -110,7 +110,7 @@ def check_none_is_the_time(variables: Sequence[Symbol], call: str, t: Symbol) ->
     """
     if t not in variables:
         return
-    other = next(name for name in ("s", "tau", "sigma") if name not in {x.name for x in variables})
+    other = next(name for name in ("s", "tau", "sigma", "clock") if name not in {x.name for x in variables})
     raise ValueError(
         f"the variable {t} is the symbol of the time too: give it another name, or the time another symbol, "
         f"{call}, t=Symbol({other!r}, real=True))"
@@ -119,7 +119,7 @@ def check_none_is_the_time(variables: Sequence[Symbol], call: str, t: Symbol) ->
 
 def check_none_reads_as_the_time(variables: Sequence[Symbol], call: str, t: Symbol) -> None:
     """Refuse the same, and a symbol without assumptions that :func:`plain` takes for the time by its name."""
-    for clock in (t, Symbol(t.name)):
+    for clock in (t, Symbol(t.name)) if isinstance(t, Symbol) else ():  # what else it is is told of elsewhere
         check_none_is_the_time(variables, call, clock)
 
 

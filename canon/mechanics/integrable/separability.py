@@ -12,8 +12,8 @@ from canon.expression.symbols.user_input import given_kind
 from canon.mechanics.algebra.all_vanish import all_vanish
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.proof.analytic import proved_sign
+from canon.proof.continuity.jumps import continued
 from canon.proof.continuity.one_sided import cuts_of
-from canon.proof.continuity.smooth import PIECED
 from canon.proof.domain.domain import as_domain
 from canon.proof.domain.verdict import Evidence, Status, Verdict
 from canon.proof.kinks import vanishes_off_kinks
@@ -110,16 +110,22 @@ def is_separable(H: Hamiltonian, domain: Domain | None = None, budget: float = 1
 
 
 def _bend_across_pairs(H: Hamiltonian, domain: Domain) -> Expr | None:
-    """Return what vanishes at a kink of H that is no place of one coordinate and its momentum, as in |x + y|.
+    """Return what vanishes at a kink or a step of H that several coordinates take part in, as in |x + y| or x sign(y).
 
     H may separate on both sides of it all the same: V = |x + y| does, whose mixed differences across it do not vanish.
     """
+    state = (*H.q, *H.p)
     pairs = [{q, p} for q, p in zip(H.q, H.p, strict=True)]
-    for cut in cuts_of(H.H, (*H.q, *H.p)):
-        if not isinstance(cut.part, PIECED) or proved_sign(cut.gap, domain) in ("+", "-"):
+    for arc in H.H.atoms(sp.asin, sp.acos):  # which may turn back and forth, as asin(sin u) does
+        if sum(bool(pair & free_symbols(arc)) for pair in pairs) > 1:
+            return cast("Expr", sp.cos(arc))
+    for cut in cuts_of(H.H, state):
+        if isinstance(cut.part, sp.Pow) or proved_sign(cut.gap, domain) in ("+", "-"):
             continue
+        step = sp.expand(continued(H.H, cut.gap, state, up=True) - continued(H.H, cut.gap, state, up=False))
         for factor in sp.Mul.make_args(sp.factor(cut.gap)):
-            if sum(bool(pair & free_symbols(factor)) for pair in pairs) > 1:
+            of_both = free_symbols(factor) | free_symbols(step)
+            if step != 0 and factor.has(*state) and sum(bool(pair & of_both) for pair in pairs) > 1:
                 return cast("Expr", factor)
     return None
 

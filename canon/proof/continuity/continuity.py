@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["continuity"]
+__all__ = ["continuity", "meets"]
 
 CONTINUOUS = "is continuous"
 LARGE = 2000
@@ -314,15 +314,24 @@ def _is_at_one_of(angles: Sequence[Cut], cut: Cut) -> bool:
 
 
 def _meets(f: Expr, cut: Cut, moving: Sequence[Symbol], domain: Domain, deadline: float) -> bool:
-    """Tell whether both continuations are proved equal where the gap vanishes."""
     left = deadline - time.monotonic()
-    if left <= 0:
-        return False
-    change = continued(f, cut.gap, moving, up=True) - continued(f, cut.gap, moving, up=False)
+    return left > 0 and meets(f, cut.gap, moving, domain, left)
+
+
+def meets(f: Expr, gap: Expr, moving: Sequence[Symbol], domain: Domain, budget: float) -> bool:
+    """Tell whether a function is proved to be continuous across a surface: both continuations are equal on it.
+
+    Examples
+    --------
+    >>> x = sp.Symbol("x", real=True)
+    >>> [meets(f, x, [x], EVERYWHERE, 1.0) for f in (abs(x), sp.sign(x), x * sp.sign(x) + sp.sign(x - 1))]
+    [True, False, True]
+    """
+    change = continued(f, gap, moving, up=True) - continued(f, gap, moving, up=False)
     if change == 0:
         return True
-    plain: dict[Expr, Expr] = {s: sp.Dummy(s.name, real=True) for s in nonzero(cut.gap, moving)}
+    plain: dict[Expr, Expr] = {s: sp.Dummy(s.name, real=True) for s in nonzero(gap, moving)}
     kept = (c for c in parts_of(domain.conditions) if not isinstance(c, sp.Ne))
-    on_gap = (*kept, cast("Boolean", sp.Eq(cut.gap, 0, evaluate=False)))
+    on_gap = (*kept, cast("Boolean", sp.Eq(gap, 0, evaluate=False)))
     there = Domain(tuple(cast("Boolean", c.xreplace(plain)) for c in on_gap))
-    return vanishes_where_defined(cast("Expr", change.xreplace(plain)), there, left).holds
+    return vanishes_where_defined(cast("Expr", change.xreplace(plain)), there, budget).holds

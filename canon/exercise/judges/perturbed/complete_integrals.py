@@ -15,6 +15,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.question.continuous_answer import is_continuous
+from canon.exercise.question.jumping_system import check_has_no_jumps
 from canon.exercise.question.question import (
     Part,
     Question,
@@ -79,6 +80,8 @@ def complete_integral(reading: Reading) -> Iterator[Question]:
     ]
     real = where_real((*slopes, *([] if rest is None else [rest])), reading.domain, slopes)
     yield Same(tuple(parts), real, _no_answer)
+    if name == "gradient" and len(q) > 1:  # across a step of H the slopes along it have to go on
+        check_has_no_jumps(Hamiltonian(H, q, p, t), real)
     yield Regular(
         sp.Matrix([[f.diff(c) for c in constants] for f in slopes]),
         "∂²W/∂q∂α",

@@ -212,7 +212,7 @@ def _unique_orders(averaged: Averaged, K: Expr, order: int) -> int:
 def normal_form(reading: Reading) -> Iterator[Question]:
     """K, as a function of the actions, is the normal form of H at the origin to a degree, with H there or without."""
     q, p = reading.phase_space("q", "p")
-    H, t, actions = _autonomous(reading), reading.time, reading.symbols("actions")
+    H, t, actions = _with_tied_values(reading, _autonomous(reading)), reading.time, reading.symbols("actions")
     degree = reading.claim.keys["degree"]
     if degree != int(degree) or not 2 <= degree <= HIGHEST_DEGREE or degree % 2:
         reading.fault("degree", f"should be an even number from 2 to {HIGHEST_DEGREE}, the degree in q and p")
@@ -331,25 +331,50 @@ def _rate_of_two_scales(reading: Reading, I: Expr, H: Expr, small: Symbol) -> Ex
 
 
 def _autonomous(reading: Reading) -> Expr:
-    """Return H, which must not depend on the time, with the values that the domain gives to parameters.
-
-    Whether frequencies are resonant depends on them.
-    """
+    """Return H, which must not depend on the time."""
     H, t = reading.expression("H"), reading.time
     if H.has(t):
         reading.fault("H", f"depends on {t}; take the phase as an angle with a momentum of its own")
-    state = {*reading.symbols("q"), *reading.symbols("p")}
-    for tie in parts_of(reading.domain.conditions):
-        if isinstance(tie, sp.Eq) and free_symbols(tie) & free_symbols(H) and not free_symbols(tie) & state:
-            H = substitute(H, _value_of(tie))
     return H
 
 
-def _value_of(tie: sp.Eq) -> dict[Symbol, Expr]:
-    for name, value in ((tie.lhs, tie.rhs), (tie.rhs, tie.lhs)):
-        if isinstance(name, Symbol) and not value.has(name):
-            return {name: value}
-    raise Undecided(f"the domain ties parameters, {tie.lhs} = {tie.rhs}: write their values into H")
+def _with_tied_values(reading: Reading, H: Expr) -> Expr:
+    """Return H with the values that the domain gives to parameters: whether frequencies are resonant depends on them.
+
+    Raises
+    ------
+    Undecided
+        Where it ties parameters of several frequencies otherwise.
+    """
+    state = {*reading.symbols("q"), *reading.symbols("p")}
+    ties = [
+        tie.lhs - tie.rhs
+        for tie in parts_of(reading.domain.conditions)
+        if isinstance(tie, sp.Eq) and not free_symbols(tie) & state
+    ]
+    while ties:
+        tie = ties.pop(0)
+        value = _value_of(tie)
+        if value is None:
+            if free_symbols(tie) & free_symbols(H) and len(reading.symbols("q")) > 1:
+                raise Undecided(f"the domain ties parameters, {tie} = 0: write their values into H")
+            continue
+        H, ties = substitute(H, value), [substitute(other, value) for other in ties]
+    return H
+
+
+def _value_of(tie: Expr) -> dict[Symbol, Expr] | None:
+    """Return the value that an equation gives to one of its names, alone or as a square of what is positive."""
+    for name in sorted(free_symbols(tie), key=str):
+        slope = tie.diff(name)
+        if slope.is_nonzero and not slope.has(name):
+            return {name: sp.cancel(name - tie / slope)}
+        of_square = tie.diff(name, 2) / 2
+        if name.is_positive and of_square.is_nonzero and not of_square.has(name):
+            rest = sp.expand(tie - of_square * name**2)
+            if not rest.has(name):
+                return {name: sp.sqrt(-rest / of_square)}
+    return None
 
 
 def _small(reading: Reading) -> Symbol:
