@@ -88,3 +88,16 @@ def test_fifty_kicks_and_a_stop_where_slices_end():
     for end in range(1, 50):
         stopped = propagate(free, (0.5, 50.5), [0, 1], events=[Event(x + 0.5 - end, action="stop")])
         assert stopped.t[-1] == pytest.approx(end, abs=1e-12)
+
+
+def test_a_start_that_only_touches_an_event_leaves_it_before_the_first_sample_and_the_next_event():
+    x, p = coordinates("x"), coordinates("x").momentum
+    oscillator = Hamiltonian(p**2 / 2 + x**2 / 2, [x], [p])
+    dense = propagate(oscillator, (0, 1), [1.0, 0.0], events=[Event(1 - sp.cos(x - 1))], samples=2000)
+    assert len(dense.t) == 2001
+    assert dense["x"] == pytest.approx(np.cos(dense.t), abs=1e-14)
+    for late in (1e-7, 3e-7, 1e-3):
+        found = propagate(oscillator, (0, 1), [1.0, 0.0], events=[Event(x - 1), Event(time - late)])
+        assert [met.t for met in found.events] == pytest.approx([late], rel=1e-6)
+    stop = [Event(x - 1, action="stop"), Event(p + 1e-7, action="stop")]
+    assert propagate(oscillator, (0, 1), [1.0, 0.0], events=stop).t[-1] == pytest.approx(1e-7, rel=1e-6)

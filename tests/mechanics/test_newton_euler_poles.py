@@ -162,3 +162,19 @@ def test_elimination_prefers_what_vanishes_nowhere_in_any_column():
     assert sp.simplify(first - b) == sp.simplify(second - 2) == 0
     assert first.subs(a, 0) == b
     assert second.subs(a, 0) == 2
+
+
+def test_loads_that_hold_accelerations_are_solved_for():
+    """A force −a ÿ along x: x'' = a g/m and y'' = −g; the matrix of the accelerations is not symmetric."""
+    from canon import Particle, coordinates, parameters, propagate
+    from canon.mechanics import Load, NewtonEuler
+
+    x, y = coordinates("x y")
+    m, a, g = parameters("m a g", positive=True)
+    pulled = NewtonEuler([Particle(m, (x, y))], [x, y], [Load(0, (-a * y.ddot, -g * m))])
+    assert [sp.cancel(f) for f in pulled.solution] == [a * g / m, -g]
+    motion = propagate(pulled, (0, 1), [0, 0, 0, 0], parameters={m: 1, a: 0.5, g: 1})
+    assert motion.final[:2] == pytest.approx([0.25, -0.5], rel=1e-12)
+    assert propagate(pulled, (0, 1), [0, 0, 0, 0], parameters={m: 1, a: 1, g: 1}).final[0] == pytest.approx(
+        0.5
+    )

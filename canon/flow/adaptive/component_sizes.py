@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["sizes_of"]
 
+
 def sizes_of(system: HamiltonEquations, state: Array) -> Array:
     """Return for each component of a state the size that its tolerance is a part of.
 

@@ -116,18 +116,21 @@ class TaylorEvents:
         return any(self._value(event, t, high[:, 0], low[:, 0]) == 0 for event in self.events)
 
     def is_off(self, begin: tuple[float, Any], here: tuple[float, Any]) -> bool:
-        """Return whether every event that was zero at a time and state has left zero for certain at others.
+        """Return whether every event that was zero at a time and state has left zero for certain at others."""
+        return not any(
+            self._value(event, begin[0], *self._parts(begin[1])) == 0
+            and abs(self._value(event, here[0], *self._parts(here[1])))
+            <= _OFF * self._place(*here).size(self.system, event.value)
+            for event in self.events
+        )
 
-        Nor is there anything to wait for where another event is passed meanwhile.
-        """
-        for event in self.events:
-            before = self._value(event, begin[0], *self._parts(begin[1]))
-            now = self._value(event, here[0], *self._parts(here[1]))
-            if before * now < 0:
-                return True
-            if before == 0 and abs(now) <= _OFF * self._place(*here).size(self.system, event.value):
-                return False
-        return True
+    def has_passed(self, begin: tuple[float, Any], here: tuple[float, Any]) -> bool:
+        """Return whether an event has been passed from a time and state to others."""
+        before, now = (
+            [self._value(event, t, *self._parts(state)) for event in self.events]
+            for t, state in (begin, here)
+        )
+        return any(a * b < 0 for a, b in zip(before, now, strict=True))
 
     def passed_at(self, t: Any, state: Any, span: Any) -> PreparedEvent | None:
         """Meet an event that ends or changes the motion and was passed unseen where a slice ended; None without one.

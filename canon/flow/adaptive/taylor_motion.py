@@ -88,7 +88,7 @@ def taylor_motion(
     if kinks is None:
         smooth = orbits_of(system, states, t0, method, number, taylor_events, span, max_step)
         if so_far is None and events and taylor_events.at_zero(float(plan.instants[0]), *states):
-            smooth[0].leave_start(dense=dense)
+            smooth[0].leave_start(grid[1], dense=dense)
         orbits: list[TaylorOrbit] | list[KinkedOrbit] = smooth
     else:
         orbits = kinked_orbits_of(kinks, states, t0, method, number, taylor_events, span, precision, max_step)

@@ -169,20 +169,28 @@ class TaylorOrbit:
             if found.event.action == "stop":
                 return handled
 
-    def leave_start(self, *, dense: bool) -> None:
-        """Move off the zero of an event at which the motion starts, which it may only touch there."""
+    def leave_start(self, sample: Any, *, dense: bool) -> None:
+        """Move off the zero of an event at which the motion starts, which it may only touch there.
+
+        No farther than half way to the first sample, and not past another event.
+        """
         free, own = self.free, self.integrator
         before, clock, begin = own.state.copy(), own.dtime, float(own.time)
         free.state[:], free.dtime = before, clock
         _, natural = free.step(self.span)
         kind, part = type(natural), _SMALL_PART
-        while part < _LARGE_PART:
+        most = min(_LARGE_PART, float(abs((sample - own.time) / natural)) / 2)
+        while part < most:
             free.state[:], free.dtime = before, clock
             free.propagate_until(own.time + natural * kind(part))
-            if self.taylor_events.is_off((begin, before), (float(free.time), free.state)):
+            here = float(free.time), free.state
+            if self.taylor_events.has_passed((begin, before), here):
+                part /= 2
+                break
+            if self.taylor_events.is_off((begin, before), here):
                 break
             part *= 2
-        self.leave([], (), dense=dense, part=part if part < _LARGE_PART else _SMALL_PART)
+        self.leave([], (), dense=dense, part=part if part < most else min(_SMALL_PART, most))
 
     def leave(
         self, left: list[Any], events: Sequence[PreparedEvent], *, dense: bool, part: float = _SMALL_PART

@@ -197,7 +197,7 @@ class NewtonEuler:
 
     def _solved(self, matrix: sp.Matrix, right: sp.Matrix) -> tuple[Expr, ...]:
         """Return the unknowns, without poles where the bodies have none."""
-        if not self.ideal.holds:
+        if not self.has_mass_matrix:
             return solve_overdetermined(matrix, right.flat(), self.weights)
         n, J, every = len(self.q), self.partial_velocities, range(matrix.rows)
         turning = matrix.extract(every, range(n))
@@ -205,6 +205,16 @@ class NewtonEuler:
         masses = symmetric_product(J, turning.tolist(), [sp.S.One] * len(J))
         found = solve(masses, sp.Matrix(J).T * right, name="the mass matrix")
         return (*found.flat(), *solve_overdetermined(holding, (right - turning * found).flat(), self.weights))
+
+    @cached_property
+    def has_mass_matrix(self) -> bool:
+        """Whether the accelerations follow from a symmetric matrix of the masses alone.
+
+        They do where reactions do no virtual work and no load holds accelerations itself.
+        """
+        rates = [acceleration(s) for s in self.q]
+        loads = [sp.Matrix([*load.force, *load.torque]) for load in self.loads]
+        return self.ideal.holds and not any(load.has(*rates) for load in loads)
 
     @cached_property
     def partial_velocities(self) -> tuple[tuple[Expr, ...], ...]:

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from canon.exercise.sheet.reading import Reading
+    from canon.proof.domain.domain import Domain
 
 __all__ = ["complete_integral", "separable"]
 
@@ -80,8 +81,7 @@ def complete_integral(reading: Reading) -> Iterator[Question]:
     ]
     real = where_real((*slopes, *([] if rest is None else [rest])), reading.domain, slopes)
     yield Same(tuple(parts), real, _no_answer)
-    if name == "gradient" and len(q) > 1:  # across a step of H the slopes along it have to go on
-        check_has_no_jumps(Hamiltonian(H, q, p, t), real)
+    _check_slopes_go_on(name, Hamiltonian(H, q, p, t), real)
     yield Regular(
         sp.Matrix([[f.diff(c) for c in constants] for f in slopes]),
         "∂²W/∂q∂α",
@@ -97,6 +97,12 @@ def complete_integral(reading: Reading) -> Iterator[Question]:
         yield (
             replace(verdict, feedback="a momentum p = ∂W/∂q is not real there") if verdict.fails else verdict
         )
+
+
+def _check_slopes_go_on(name: str, H: Hamiltonian, domain: Domain) -> None:
+    """Refuse slopes of W given alone where H has a step: those along the step would have to go on across it."""
+    if name == "gradient" and len(H.q) > 1:
+        check_has_no_jumps(H, domain)
 
 
 def _without_quadratures(reading: Reading, whole: Expr, name: str, slopes: Sequence[Expr]) -> Expr:

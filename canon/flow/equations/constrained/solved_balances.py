@@ -52,7 +52,7 @@ def solved_balances(
     if any(graph.symbols(a) & {*unknown} for e in balances for a in graph.gradient(e, unknown)):
         raise ValueError(f"the equations are not linear in {', '.join(map(str, unknown))}")
     weights = [graph.number(w) for w in _weights(graph, given, start)]
-    if not given.ideal.holds:
+    if not given.has_mass_matrix:
         return _least_squares(graph, balances, unknown, weights, start)
     accelerations, reactions = unknown[:n], unknown[n:]
     slopes = [[graph.from_sympy(a) for a in row] for row in given.partial_velocities]
