@@ -452,3 +452,20 @@ def test_manifolds_leave_an_orbit_and_fall_into_it() -> None:
         assert energies == pytest.approx(orbit.energy, abs=1e-12)
     with pytest.raises(ValueError, match="no real multiplier"):
         manifold_starts(periodic_orbit(oscillators(1), [1.0, 0.001, 0.0, 0.002], 6.2))
+
+
+@pytest.mark.parametrize("guess", [6900, 7000, 7050, 7100, 7200])
+def test_kepler_where_every_orbit_closes(guess):
+    """In metres and seconds and in its own units, to the period 2π √(a³/μ) of the start's energy."""
+    x, y = coordinates("x y")
+    for mu, r, v, unit in (
+        (3.9860044e14, 7e6, 8e3, 1.0),
+        (1.0, 1.0, 8e3 * (7e6 / 3.9860044e14) ** 0.5, None),
+    ):
+        unit = unit or (7e6**3 / 3.9860044e14) ** 0.5
+        kepler = Hamiltonian(
+            (x.momentum**2 + y.momentum**2) / 2 - mu / sp.sqrt(x**2 + y**2), [x, y], [x.momentum, y.momentum]
+        )
+        found = periodic_orbit(kepler, [r, 0, 0, v], guess / unit)
+        axis = 1 / (2 / r - v**2 / mu)
+        assert found.period == pytest.approx(2 * np.pi * (axis**3 / mu) ** 0.5, rel=1e-9)

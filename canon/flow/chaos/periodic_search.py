@@ -36,8 +36,9 @@ _PERIODS = 2.0
 _LEAST_ROW = 1e-2
 """Least scale of an equation, in parts of the largest: what is smaller may be all rounding."""
 
-_SMALLEST_SINGULAR = 1e-9
-"""Directions in which less changes than this part of the largest change are those of symmetries: none is followed."""
+_SMALLEST_SINGULAR, _SURE_SINGULAR = 1e-9, 1e-3
+"""Directions in which less changes than this part of the largest change are those of symmetries: none is followed.
+Where they are nearly so, as among Kepler's orbits, which all close, a step is better that leaves them alone."""
 
 
 class NoPeriodicOrbitError(ValueError):
@@ -195,9 +196,7 @@ class PeriodicSearch:
         """
         guess = _Guess.of(self, y, period, self.scale(y, period), energy)
         for _ in range(_TRIES):
-            following = (
-                None if guess.exact else self._improved(guess, self._newton_step(guess, across), period)
-            )
+            following = None if guess.exact else self._following(guess, across, period)
             if following is None:
                 if guess.settled:
                     self._check_moving(guess)
@@ -226,6 +225,15 @@ class PeriodicSearch:
                 guess.y, guess.period, guess.defect,
             )  # fmt: skip
 
+    def _following(self, guess: _Guess, across: Array | None, first: float) -> _Guess | None:
+        """Return the better of the guesses in all directions and in those that are certainly no symmetries."""
+        whole, sure = (
+            self._newton_step(guess, across, least) for least in (_SMALLEST_SINGULAR, _SURE_SINGULAR)
+        )
+        steps = [whole] if np.array_equal(whole, sure) else [whole, sure]
+        found = [each for step in steps if (each := self._improved(guess, step, first)) is not None]
+        return min(found, key=lambda each: each.missing, default=None)
+
     def _improved(self, guess: _Guess, step: Array, first: float) -> _Guess | None:
         """Return a better guess along a step of Newton's, or None where there is none near the first period."""
         for halvings in range(8):
@@ -253,7 +261,7 @@ class PeriodicSearch:
             floquet_multipliers(M, slope), self, scale,
         )  # fmt: skip
 
-    def _newton_step(self, guess: _Guess, across: Array | None) -> Array:
+    def _newton_step(self, guess: _Guess, across: Array | None, least: float) -> Array:
         """Return the step of (y, T) by which what does not close would vanish to first order."""
         scale = guess.scale
         rows, right = self.conditions(guess)
@@ -263,7 +271,7 @@ class PeriodicSearch:
         if across is not None:
             rows.append(across * scale.both)
             right.append(0.0)
-        return self.solved(np.array(rows), np.array(right)) * scale.both
+        return self.solved(np.array(rows), np.array(right), least) * scale.both
 
     def conditions(self, guess: _Guess) -> tuple[list[Array], list[float]]:
         """Return linear equations for (δy, δT) in the orbit's scale: that it closes, and that the step is across it."""
@@ -299,17 +307,15 @@ class PeriodicSearch:
             free[:-1] = self.signs > 0
         return free
 
-    def solved(self, rows: Array, right: Array) -> Array:
-        """Return the shortest solution in what varies."""
+    def solved(self, rows: Array, right: Array, least: float = _SMALLEST_SINGULAR) -> Array:
+        """Return the shortest solution in what varies, in directions in which enough changes."""
         free = self._free(rows.shape[1])
         scale = np.abs(rows[:, free]).max(axis=1)
         # At a turning point the derivatives of a row vanish but for rounding, which is not to be blown up.
         scale = np.maximum(scale, _LEAST_ROW * scale.max(initial=0.0))
         scale[scale == 0] = 1.0
         found = np.zeros(rows.shape[1])
-        found[free] = np.linalg.lstsq(
-            rows[:, free] / scale[:, np.newaxis], right / scale, rcond=_SMALLEST_SINGULAR
-        )[0]
+        found[free] = np.linalg.lstsq(rows[:, free] / scale[:, np.newaxis], right / scale, rcond=least)[0]
         return found
 
 
