@@ -187,7 +187,7 @@ def _change(gap: Expr, system: Hamiltonian | Lagrangian, domain: Domain) -> dict
         changed = solve(system.mass_matrix, sp.Matrix([gap.diff(x) for x in system.q]), domain)
     except SingularMatrixError:
         return None
-    return dict(zip(system.velocities, cast("list[Expr]", list(changed)), strict=True))
+    return dict(zip(system.velocities, changed.flat(), strict=True))
 
 
 def _is_of_time(gap: Expr, system: Hamiltonian | Lagrangian) -> bool:

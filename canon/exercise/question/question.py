@@ -326,7 +326,7 @@ def _singular_places(matrix: sp.MatrixBase, name: str, domain: Domain) -> Iterat
     """Yield where a small matrix may be singular, unless it is proved to be regular everywhere."""
     if matrix.rows > _SMALL:
         return
-    determinant = cast("Expr", sp.factor_terms(matrix.det(method="berkowitz")))
+    determinant = cast("Expr", matrix.det(method="berkowitz"))
     ways = (determinant, cast("Expr", sp.expand_trig(determinant)))
     if determinant.is_nonzero or any(proved_sign(way, domain) in ("+", "-") for way in ways):
         return

@@ -136,7 +136,9 @@ def of_true_orbits(judged: Judged, energy_error: Array) -> Judged:
         else reason
         for far, off, reason in zip(wrong, energy_error, judged.reasons, strict=True)
     )
-    return replace(judged, verdicts=np.where(wrong, Regularity.NOT_KNOWN, judged.verdicts), reasons=reasons)
+    verdicts = judged.verdicts.copy()
+    verdicts[wrong] = Regularity.NOT_KNOWN
+    return replace(judged, verdicts=verdicts, reasons=reasons)
 
 
 def quarters(t: Array) -> tuple[slice, slice]:

@@ -117,7 +117,7 @@ def check_none_is_the_time(variables: Sequence[Symbol], call: str, t: Symbol) ->
     )
 
 
-def check_none_reads_as_the_time(variables: Sequence[Symbol], call: str, t: Symbol) -> None:
+def check_none_reads_as_the_time(variables: Sequence[Symbol], call: str, t: Any) -> None:
     """Refuse the same, and a symbol without assumptions that :func:`plain` takes for the time by its name."""
     for clock in (t, Symbol(t.name)) if isinstance(t, Symbol) else ():  # what else it is is told of elsewhere
         check_none_is_the_time(variables, call, clock)

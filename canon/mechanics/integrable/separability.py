@@ -118,15 +118,16 @@ def _bend_across_pairs(H: Hamiltonian, domain: Domain) -> Expr | None:
     pairs = [{q, p} for q, p in zip(H.q, H.p, strict=True)]
     for arc in H.H.atoms(sp.asin, sp.acos):  # which may turn back and forth, as asin(sin u) does
         if sum(bool(pair & free_symbols(arc)) for pair in pairs) > 1:
-            return cast("Expr", sp.cos(arc))
+            return sp.cos(arc)
     for cut in cuts_of(H.H, state):
         if isinstance(cut.part, sp.Pow) or proved_sign(cut.gap, domain) in ("+", "-"):
             continue
-        step = sp.expand(continued(H.H, cut.gap, state, up=True) - continued(H.H, cut.gap, state, up=False))
+        sides = [continued(H.H, cut.gap, state, up=up) for up in (True, False)]
+        step = cast("Expr", sp.expand(sp.Add(sides[0], -sides[1])))
         for factor in sp.Mul.make_args(sp.factor(cut.gap)):
             of_both = free_symbols(factor) | free_symbols(step)
             if step != 0 and factor.has(*state) and sum(bool(pair & of_both) for pair in pairs) > 1:
-                return cast("Expr", factor)
+                return factor
     return None
 
 

@@ -338,7 +338,7 @@ def _autonomous(reading: Reading) -> Expr:
     return H
 
 
-def _with_tied_values(reading: Reading, H: Expr) -> Expr:
+def _with_tied_values(reading: Reading, energy: Expr) -> Expr:
     """Return H with the values that the domain gives to parameters: whether frequencies are resonant depends on them.
 
     Raises
@@ -348,7 +348,7 @@ def _with_tied_values(reading: Reading, H: Expr) -> Expr:
     """
     state = {*reading.symbols("q"), *reading.symbols("p")}
     ties = [
-        tie.lhs - tie.rhs
+        cast("Expr", tie.lhs) - cast("Expr", tie.rhs)
         for tie in parts_of(reading.domain.conditions)
         if isinstance(tie, sp.Eq) and not free_symbols(tie) & state
     ]
@@ -356,11 +356,11 @@ def _with_tied_values(reading: Reading, H: Expr) -> Expr:
         tie = ties.pop(0)
         value = _value_of(tie)
         if value is None:
-            if free_symbols(tie) & free_symbols(H) and len(reading.symbols("q")) > 1:
+            if free_symbols(tie) & free_symbols(energy) and len(reading.symbols("q")) > 1:
                 raise Undecided(f"the domain ties parameters, {tie} = 0: write their values into H")
             continue
-        H, ties = substitute(H, value), [substitute(other, value) for other in ties]
-    return H
+        energy, ties = substitute(energy, value), [substitute(other, value) for other in ties]
+    return energy
 
 
 def _value_of(tie: Expr) -> dict[Symbol, Expr] | None:
