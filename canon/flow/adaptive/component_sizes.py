@@ -19,15 +19,20 @@ if TYPE_CHECKING:
 __all__ = ["sizes_of"]
 
 
-def sizes_of(system: HamiltonEquations, state: Array) -> Array:
+def sizes_of(system: HamiltonEquations, largest: Array, start: Array) -> Array:
     """Return for each component of a state the size that its tolerance is a part of.
+
+    A half that starts at zero has no unit yet: it takes that of the other half, and 1 where all is zero. What grows
+    from nothing, as under a force that is switched on later, would be followed to all its digits else.
 
     Parameters
     ----------
     system
         The equations: whether their state has two halves with units of their own.
-    state
+    largest
         The largest sizes of the components so far.
+    start
+        The state at the start.
 
     Examples
     --------
@@ -35,10 +40,11 @@ def sizes_of(system: HamiltonEquations, state: Array) -> Array:
     >>> from canon.scene import find
     >>> scene = find("kepler")
     >>> system = hamilton_equations_of(scene.hamiltonian, scene.values)
-    >>> sizes_of(system, np.array([1e-10, 0.0, 0.0, 5.0])).tolist()
+    >>> start = np.array([1e-10, 0.0, 0.0, 0.0])
+    >>> sizes_of(system, np.array([1e-10, 0.0, 0.0, 5.0]), start).tolist()
     [1e-10, 1e-10, 1.0, 1.0]
     """
-    halves = np.split(state, 2) if system.canonical and not system.spare else [state]
-    # A half that is zero has no size yet: the first step, which the other half chooses, gives it one.
-    found = [np.full(len(half), np.abs(half).max() or 1.0) for half in halves]
-    return np.minimum(np.concatenate(found), 1.0)
+    count = 2 if system.canonical and not system.spare else 1
+    begun, reached = (np.abs(np.split(each, count)).max(axis=1) for each in (start, largest))
+    begun[begun == 0] = begun.max() or 1.0
+    return np.minimum(np.repeat(np.maximum(begun, reached), len(start) // count), 1.0)
