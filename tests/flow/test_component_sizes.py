@@ -1,4 +1,4 @@
-"""DOP853's tolerance is a relative one in whatever units, and components that are zero or rounding don't stop it."""
+"""DOP853 follows small states as exactly as large ones, and components that are zero or rounding don't stop it."""
 
 import numpy as np
 import pytest

@@ -252,3 +252,9 @@ def test_variational_equations_are_made_once():
     assert np.array_equal(found, again)
     assert np.array_equal(found[0], found[2])
     assert not np.array_equal(found[0], found[1])
+
+
+@pytest.mark.parametrize("sizes", [[0, 1], [-1, 1], [float("nan"), 1], [1, 1, 1], [1]])
+def test_sizes_of_variations_are_positive_numbers_one_for_each_variable(sizes):
+    with pytest.raises(ValueError, match="give a positive number for each of the 2 variables"):
+        flow_jacobian("simple-pendulum", (0, 1), [0.5, 0.0], sizes=sizes)

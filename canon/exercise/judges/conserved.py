@@ -30,6 +30,7 @@ __all__ = [
     "conserved_or_not",
     "mechanical_system",
     "motion_of",
+    "rate_along",
     "same_everywhere",
     "system_of",
 ]
@@ -40,11 +41,7 @@ NOT_OF_THE_STATE = "what does not depend on the state is true of any system"
 def conserved_or_not(reading: Reading) -> Iterator[Question]:
     """dI/dt = Σ ∂I/∂x ẋ + ∂I/∂t vanishes for the one list and does not vanish identically for the other."""
     rates, t = motion_of(reading), reading.time
-
-    def rate_of(f: Expr) -> tuple[Expr]:
-        return (sp.Add(*(f.diff(x) * value for x, value in rates.items()), f.diff(t)),)
-
-    state = (*rates, t)
+    rate_of, state, system = rate_along(rates, t), (*rates, t), mechanical_system(reading)
     for key in ("conserved", "not_conserved"):
         if not reading.has(key):
             continue
@@ -55,15 +52,24 @@ def conserved_or_not(reading: Reading) -> Iterator[Question]:
             (rate,) = rate_of(I)
             if key == "conserved":
                 yield Same((Part(f"d/dt ({I})", rate),), reading.domain, said=_not_conserved)
-                check_kept_at_jumps(I, mechanical_system(reading), reading.domain)
+                check_kept_at_jumps(I, system, reading.domain)
                 yield from constants_are_continuous(I, state, reading.domain, rate_of, system_of(reading))
             else:
                 _check_continuous(I, state, reading.domain, rate_of)
                 if vanishes_off_kinks(rate, reading.domain, SIDE_SECONDS).holds:
-                    check_kept_at_jumps(I, mechanical_system(reading), reading.domain)
+                    check_kept_at_jumps(I, system, reading.domain)
                 why = f"{I} is conserved: its rate vanishes on every motion"
                 yield Differ(Part(f"d/dt ({I})", rate), reading.domain, why)
         yield Tells((same_everywhere(quantities, tuple(rates), reading.domain),), NOT_OF_THE_STATE)
+
+
+def rate_along(rates: Mapping[Symbol, Expr], t: Symbol) -> Callable[[Expr], tuple[Expr]]:
+    """Return what gives the rate df/dt = Σ ∂f/∂x ẋ + ∂f/∂t of a function of the state, alone in a tuple."""
+
+    def rate_of(f: Expr) -> tuple[Expr]:
+        return (sp.Add(*(f.diff(x) * value for x, value in rates.items()), f.diff(t)),)
+
+    return rate_of
 
 
 def same_everywhere(

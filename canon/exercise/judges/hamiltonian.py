@@ -10,6 +10,7 @@ from sympy import Expr, Symbol
 from canon.exercise.judges.conserved import (
     NOT_OF_THE_STATE,
     mechanical_system,
+    rate_along,
     same_everywhere,
     system_of,
 )
@@ -91,16 +92,13 @@ def constant_of_motion(reading: Reading) -> Iterator[Question]:
     """dI/dt = Σ ∂I/∂x ẋ + ∂I/∂t vanishes, where the restrictions do."""
     I, t = reading.expression("I"), reading.time
     rates = _rates(reading, I)
-
-    def rate_of(f: Expr) -> tuple[Expr]:
-        return (sp.Add(*(f.diff(x) * value for x, value in rates.items()), f.diff(t)),)
-
+    rate_of, system = rate_along(rates, t), mechanical_system(reading)
     restrictions = reading.equations("restrict") if reading.has("restrict") else ()
     branches = on_manifold(restrictions, reading.domain)
     for branch in branches:
         there = substitute(I, branch.values)
         yield Same((Part("dI/dt", *rate_of(I), through=branch.values),), branch.domain)
-        check_kept_at_jumps(there, mechanical_system(reading), branch.domain)
+        check_kept_at_jumps(there, system, branch.domain)
         yield from constants_are_continuous(there, (*rates, t), branch.domain, rate_of, system_of(reading))
     trivial = tuple(same_everywhere((I,), tuple(rates), b.domain, b.values) for b in branches)
     yield Tells(trivial, "it follows from `restrict` alone" if restrictions else NOT_OF_THE_STATE)

@@ -86,14 +86,15 @@ def _kept_border(
     given: Sequence[Expr],
 ) -> Expr | None:
     """Return what vanishes where I may jump and is a continuous constant of the motion; None of a system that jumps."""
-    if any(not cut.bends and proved_sign(cut.gap, domain) == "" for f in given for cut in cuts_of(f, state)):
+    if any(_open_gaps(f, state, domain) for f in given):
         return None
-    for cut in cuts_of(I, state):
-        open_ = not cut.bends and proved_sign(cut.gap, domain) == ""
-        if (
-            open_
-            and vanishes(sp.Matrix(rates(cut.gap)), domain, PROOF_SECONDS).holds
-            and continuity(cut.gap, state, domain, PROOF_SECONDS, angles=False).holds
-        ):
-            return cut.gap
+    for gap in _open_gaps(I, state, domain):
+        is_kept = vanishes(sp.Matrix(rates(gap)), domain, PROOF_SECONDS).holds
+        if is_kept and continuity(gap, state, domain, PROOF_SECONDS, angles=False).holds:
+            return gap
     return None
+
+
+def _open_gaps(f: Expr, state: Sequence[Symbol], domain: Domain) -> list[Expr]:
+    """Return what vanishes where a function may jump inside the domain."""
+    return [cut.gap for cut in cuts_of(f, state) if not cut.bends and proved_sign(cut.gap, domain) == ""]

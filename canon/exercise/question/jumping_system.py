@@ -9,7 +9,7 @@ alone the state does not change.
 from __future__ import annotations
 
 from itertools import combinations
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
@@ -92,8 +92,10 @@ def check_has_no_jumps(system: Hamiltonian | Lagrangian | None, domain: Domain) 
     Undecided
         Where it jumps.
     """
-    for gap in _jumps(system, domain) if system is not None else ():
-        raise Undecided(_said(cast("Hamiltonian | Lagrangian", system), gap))
+    if system is None:
+        return
+    for gap in _jumps(system, domain):
+        raise Undecided(_said(system, gap))
 
 
 def check_absent(coordinates: Sequence[Symbol], lagrangian: Lagrangian, domain: Domain) -> None:

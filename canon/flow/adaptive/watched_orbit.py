@@ -101,7 +101,7 @@ class WatchedOrbit:
         if self.kinks is not None:
             self.signs = signs_at_start(self.kinks, self._place(), self.forward)
         self._sides = self._sides_now(rounding=0.0)  # as the other engines take a start
-        self._sizes = self._begun = abs(self.y)
+        self._sizes = self._start = abs(self.y)
 
     @property
     def compile_seconds(self) -> float:
@@ -113,7 +113,7 @@ class WatchedOrbit:
         integrator.max_step = self.longest(before, kept)
         message = integrator.step()
         self._sizes = np.fmax(self._sizes, abs(integrator.y))
-        integrator.atol = self.tolerances[1] * sizes_of(self.system, self._sizes, self._begun)
+        integrator.atol = self.tolerances[1] * sizes_of(self.system, self._sizes, self._start)
         self.steps += 1
         if integrator.status == "failed" or not np.isfinite(integrator.y).all():
             raise _lost(before, kept[self.system.rows], message)
@@ -377,7 +377,7 @@ class WatchedOrbit:
             y,
             end,
             rtol=relative,
-            atol=absolute * sizes_of(self.system, self._sizes, self._begun),
+            atol=absolute * sizes_of(self.system, self._sizes, self._start),
             first_step=None if first is None else min(first, abs(end - t)) or None,
         )
 

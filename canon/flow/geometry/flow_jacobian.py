@@ -149,8 +149,8 @@ def flow_jacobian(
     Raises
     ------
     ValueError
-        As ``propagate``; or several states or parameters by orbit are given; or the motion stays on a kink or is
-        refracted there.
+        As ``propagate``; or several states or parameters by orbit are given; or sizes that are not positive; or the
+        motion stays on a kink or is refracted there.
 
     Examples
     --------
@@ -196,7 +196,10 @@ def _units(count: int, rows: Any, sizes: npt.ArrayLike | None) -> Array:
     """Return powers of two near the sizes, so that dividing by them rounds nothing."""
     units = np.ones(count)
     if sizes is not None:
-        units[rows] = 2.0 ** np.round(np.log2(np.asarray(sizes, dtype=np.float64)))
+        given, shape = np.asarray(sizes, dtype=np.float64), units[rows].shape
+        if given.shape != shape or not (np.isfinite(given) & (given > 0)).all():
+            raise ValueError(f"sizes={sizes}: give a positive number for each of the {shape[0]} variables")
+        units[rows] = 2.0 ** np.round(np.log2(given))
     return units
 
 

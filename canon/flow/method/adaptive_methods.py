@@ -62,9 +62,9 @@ class DOP853:
     Parameters
     ----------
     tolerance
-        What a step may miss, in parts of the size of each component of the state: the largest that it has had so far,
-        and at first what it comes to in the time in which the motion changes. So it is in whatever units. Components
-        that would be zero but for rounding are measured by the terms of their rates.
+        What a step may miss: of each component of the state in parts of itself, and beside that in parts of the largest
+        number that the coordinates, and likewise the momenta, have had so far, but of no more than 1. A state of small
+        numbers is so followed as exactly as one of large ones.
     """
 
     tolerance: float = 1e-12

@@ -110,7 +110,8 @@ def check_none_is_the_time(variables: Sequence[Symbol], call: str, t: Symbol) ->
     """
     if t not in variables:
         return
-    other = next(name for name in ("s", "tau", "sigma", "clock") if name not in {x.name for x in variables})
+    taken = {x.name for x in variables}
+    other = next((name for name in ("s", "tau", "sigma") if name not in taken), "another name")
     raise ValueError(
         f"the variable {t} is the symbol of the time too: give it another name, or the time another symbol, "
         f"{call}, t=Symbol({other!r}, real=True))"

@@ -38,10 +38,10 @@ def solve_overdetermined(
 
     Examples
     --------
-    >>> from sympy import Matrix, cos, sin, symbols
-    >>> t, b = symbols("t b", real=True)
-    >>> solve_overdetermined(Matrix([sin(t), cos(t)]), [b * sin(t), b * cos(t)], [1, 1])[0].simplify()
-    b
+    >>> from sympy import Matrix, symbols
+    >>> b = symbols("b", real=True)
+    >>> solve_overdetermined(Matrix([[1, 0], [1, 1], [0, 1]]), [b, b + 2, 2], [1, 1, 1])
+    (b, 2)
     """
     rows: list[list[Expr]] = [[*matrix.row(i).flat(), b] for i, b in enumerate(right)]
     waiting, open_ = list(range(len(rows))), list(range(matrix.cols))

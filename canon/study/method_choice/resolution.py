@@ -13,8 +13,8 @@ from canon.flow.method.number_formats import unit_round_off
 __all__ = ["RESOLVED", "least_error"]
 
 RESOLVED = 0.5
-"""Least relative error in units of rounding, the most that rounding a number changes it by: about half of one is usual,
-and the few roundings that remain whatever the step do not all cancel."""
+"""Least relative error in units of rounding, the most that rounding a number changes it by: the few roundings that
+remain whatever the step do not all cancel."""
 
 
 def least_error(precision: str) -> float:

@@ -14,6 +14,7 @@ from sympy import Expr, Symbol
 
 from canon.exercise.judges.conserved import NOT_OF_THE_STATE, same_everywhere
 from canon.exercise.judges.energy_and_force import shown_short
+from canon.exercise.judges.perturbed.tied_parameters import with_tied_values
 from canon.exercise.judges.perturbed.tori import slow_invariant
 from canon.exercise.judges.small_quantities import small_symbols
 from canon.exercise.question.continuous_answer import is_continuous
@@ -32,10 +33,8 @@ from canon.mechanics.perturbation.quadratic_form import NoDiagonalFormError
 from canon.mechanics.perturbation.taylor_parts import NotAnalyticError
 from canon.proof.continuity.jumps import find_jump
 from canon.proof.continuity.one_sided import Cut, cuts_of
-from canon.proof.domain.relations import parts_of
 from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict
 from canon.proof.kinks import vanishes_off_kinks
-from canon.proof.trees.sympy_types import free_symbols
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -212,7 +211,7 @@ def _unique_orders(averaged: Averaged, K: Expr, order: int) -> int:
 def normal_form(reading: Reading) -> Iterator[Question]:
     """K, as a function of the actions, is the normal form of H at the origin to a degree, with H there or without."""
     q, p = reading.phase_space("q", "p")
-    H, t, actions = _with_tied_values(reading, _autonomous(reading)), reading.time, reading.symbols("actions")
+    H, t, actions = with_tied_values(reading, _autonomous(reading)), reading.time, reading.symbols("actions")
     degree = reading.claim.keys["degree"]
     if degree != int(degree) or not 2 <= degree <= HIGHEST_DEGREE or degree % 2:
         reading.fault("degree", f"should be an even number from 2 to {HIGHEST_DEGREE}, the degree in q and p")
@@ -336,45 +335,6 @@ def _autonomous(reading: Reading) -> Expr:
     if H.has(t):
         reading.fault("H", f"depends on {t}; take the phase as an angle with a momentum of its own")
     return H
-
-
-def _with_tied_values(reading: Reading, energy: Expr) -> Expr:
-    """Return H with the values that the domain gives to parameters: whether frequencies are resonant depends on them.
-
-    Raises
-    ------
-    Undecided
-        Where it ties parameters of several frequencies otherwise.
-    """
-    state = {*reading.symbols("q"), *reading.symbols("p")}
-    ties = [
-        cast("Expr", tie.lhs) - cast("Expr", tie.rhs)
-        for tie in parts_of(reading.domain.conditions)
-        if isinstance(tie, sp.Eq) and not free_symbols(tie) & state
-    ]
-    while ties:
-        tie = ties.pop(0)
-        value = _value_of(tie)
-        if value is None:
-            if free_symbols(tie) & free_symbols(energy) and len(reading.symbols("q")) > 1:
-                raise Undecided(f"the domain ties parameters, {tie} = 0: write their values into H")
-            continue
-        energy, ties = substitute(energy, value), [substitute(other, value) for other in ties]
-    return energy
-
-
-def _value_of(tie: Expr) -> dict[Symbol, Expr] | None:
-    """Return the value that an equation gives to one of its names, alone or as a square of what is positive."""
-    for name in sorted(free_symbols(tie), key=str):
-        slope = tie.diff(name)
-        if slope.is_nonzero and not slope.has(name):
-            return {name: sp.cancel(name - tie / slope)}
-        of_square = tie.diff(name, 2) / 2
-        if name.is_positive and of_square.is_nonzero and not of_square.has(name):
-            rest = sp.expand(tie - of_square * name**2)
-            if not rest.has(name):
-                return {name: sp.sqrt(-rest / of_square)}
-    return None
 
 
 def _small(reading: Reading) -> Symbol:
