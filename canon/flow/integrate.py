@@ -40,13 +40,24 @@ def integrate(
     NonFiniteStateError
         The motion can't be continued.
     """
-    if task.events and task.states[0].shape[1] > 1:
+    if task.states[0].shape[1] > 1 and (task.events or _is_watched(task)):
         return _one_by_one(task, progress, so_far)
     return _ENGINES[task.method.engine](task, task.method, progress, so_far)
 
 
+def _is_watched(task: Task) -> bool:
+    """Tell whether an adaptive method looks out for zeros in the equations at which their motion ends."""
+    if task.method.engine not in (HEYOKA, SCIPY):
+        return False
+    from canon.flow.kinked.branch_points import may_meet_branch_points
+    from canon.flow.kinked.lost_direction import may_lose_direction
+
+    branches = task.method.engine is HEYOKA and kinks_of(task.system) is None
+    return may_lose_direction(task.system) or (branches and may_meet_branch_points(task.system))
+
+
 def _one_by_one(task: Task, progress: Callable[[float], None], so_far: Samples | None) -> Samples:
-    """Return orbits with events, each the same bits as by itself, as they are met at times of each orbit's own.
+    """Return orbits each the same bits as by itself: events and such zeros are met at times of each orbit's own.
 
     Raises
     ------
@@ -69,7 +80,9 @@ def _one_by_one(task: Task, progress: Callable[[float], None], so_far: Samples |
         except NonFiniteStateError as lost:
             raise type(lost)(f"orbit {k}: {lost}", lost.time, lost.state) from None
         if not own.arrived(made[-1]):
-            raise KeyboardInterrupt("orbits with events are done one by one: nothing of them is kept")
+            raise KeyboardInterrupt(
+                "orbits with events or roots are done one by one: nothing of them is kept"
+            )
     return side_by_side(made)
 
 
@@ -119,27 +132,33 @@ def _by_heyoka(
 ) -> Samples:
     from canon.flow.adaptive.taylor_motion import taylor_motion
     from canon.flow.kinked.branch_points import branch_points, check_branch_points
+    from canon.flow.kinked.lost_direction import check_directions, lost_directions
 
     system, states, events = task.system, _states(task, so_far), prepared_events(task.system, task.events)
     precision, dense = task.precision or method.engine.usual_precision, task.dense
-    alone = states[0].shape[1] == 1 and kinks_of(system) is None
-    begin = float(task.plan.last(0 if so_far is None else len(so_far.t) - 1))
-    branches = branch_points(system, states[0][:, 0], begin) if alone else ()
+    start, begin = states[0][:, 0], _begin(task, so_far)
+    branches = branch_points(system, start, begin) if kinks_of(system) is None else ()
+    lost = lost_directions(system, start, begin)
     made = taylor_motion(
-        system, states, task.plan, method, precision, progress, so_far, (*events, *branches), dense=dense,
+        system, states, task.plan, method, precision, progress, so_far, (*events, *branches, *lost), dense=dense,
         max_step=task.max_step,
     )  # fmt: skip
-    return joined(so_far, check_branch_points(branches, made, system.rows))
+    made = check_directions(lost, made)
+    return joined(so_far, check_branch_points(branches, made))
 
 
 def _by_scipy(
     task: Task, method: DOP853, progress: Callable[[float], None], so_far: Samples | None
 ) -> Samples:
     from canon.flow.adaptive.dop853 import dop853_motion
+    from canon.flow.kinked.lost_direction import check_directions, lost_directions
 
     (states, _), events = _states(task, so_far), prepared_events(task.system, task.events)
-    made = dop853_motion(task.system, states, task.plan, method, progress, so_far, task.max_step, events)
-    return joined(so_far, made)
+    lost = lost_directions(task.system, states[:, 0], _begin(task, so_far))
+    made = dop853_motion(
+        task.system, states, task.plan, method, progress, so_far, task.max_step, (*events, *lost)
+    )
+    return joined(so_far, check_directions(lost, made))
 
 
 _ENGINES: dict[Engine, Callable[[Task, Any, Callable[[float], None], Samples | None], Samples]] = {
@@ -154,3 +173,8 @@ _ENGINES: dict[Engine, Callable[[Task, Any, Callable[[float], None], Samples | N
 def _states(task: Task, so_far: Samples | None) -> tuple[Array, Array]:
     """Return the states to go on from."""
     return task.states if so_far is None else (so_far.y[:, -1], so_far.carried[:, -1])
+
+
+def _begin(task: Task, so_far: Samples | None) -> float:
+    """Return the time to go on from."""
+    return float(task.plan.last(0 if so_far is None else len(so_far.t) - 1))

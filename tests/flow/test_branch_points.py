@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from sympy import Rational, sqrt, symbols
 
-from canon import Event, Hamiltonian, VectorField, coordinates, propagate
+from canon import Event, Hamiltonian, Lagrangian, VectorField, coordinates, propagate
 from canon.flow import NonFiniteStateError
 
 u, v = symbols("u v", real=True)
@@ -31,6 +31,17 @@ def test_the_same_of_functions_several_variables_and_backwards():
         propagate(VectorField([sqrt(u)], [u]), (0, -3), [1.0])
 
 
+def test_of_many_orbits_the_first_that_meets_it_is_named():
+    tanks = np.array([[9.0, 1.0, 4.0]])
+    with pytest.raises(NonFiniteStateError, match=r"orbit 1: .* after t = 2 .*goes on as the other root"):
+        propagate(DRAINING, (0, 3), tanks)
+    before = propagate(DRAINING, (0, 1), tanks)
+    assert before.final == pytest.approx((np.sqrt(tanks) - 0.5) ** 2, rel=1e-14)
+    assert before.resume(1.9).final == pytest.approx((np.sqrt(tanks) - 0.95) ** 2, rel=1e-11)
+    with pytest.raises(NonFiniteStateError, match="orbit 1"):
+        before.resume(3)
+
+
 def test_before_it_and_at_an_event_there_all_is_well():
     before = propagate(DRAINING, (0, 1.9), [1.0])
     assert before.final[0] == pytest.approx(0.05**2, rel=1e-12)
@@ -51,3 +62,10 @@ def test_roots_that_stay_positive_are_no_branch_points():
     assert abs(motion.energy_error).max() < 1e-14
     relativistic = Hamiltonian(sqrt(1 + x.momentum**2) + x**2 / 2, [x], [x.momentum])
     assert abs(propagate(relativistic, (0, 100), [1.5, 0.3]).energy_error).max() < 1e-14
+
+
+def test_a_root_of_a_velocity_beside_the_work_that_is_followed():
+    x = coordinates("x")
+    with pytest.raises(NonFiniteStateError, match="after t = 2 where") as lost:
+        propagate(Lagrangian(x.dot**2 / 2, [x], forces=[-sqrt(x.dot)]), (0, 5), [0.0, 1.0])
+    assert lost.value.state == pytest.approx([2 / 3, 0], abs=1e-10)

@@ -1,9 +1,9 @@
 """Sizes of states: what DOP853 takes its tolerance for parts of.
 
 SciPy's absolute tolerance is in whatever unit the state has: 1e-12 m is much for an electron in its orbit. Here it is a
-part of the largest number that the coordinates have had so far, and of the momenta likewise, though of no more than 1,
-so that it is never wider than SciPy's. One number for all coordinates lets one that is nothing but rounding beside
-others, as the middle of a chain that is held by symmetry, not make the steps short.
+part of the largest number that the coordinates have had so far, and of the momenta or velocities likewise, though of
+no more than 1, so that it is never wider than SciPy's. One number for all coordinates lets one that is nothing but
+rounding beside others, as the middle of a chain that is held by symmetry, not make the steps short.
 """
 
 from __future__ import annotations
@@ -44,7 +44,18 @@ def sizes_of(system: HamiltonEquations, largest: Array, start: Array) -> Array:
     >>> sizes_of(system, np.array([1e-10, 0.0, 0.0, 5.0]), start).tolist()
     [1e-10, 1e-10, 1.0, 1.0]
     """
-    count = 2 if system.canonical and not system.spare else 1
-    begun, reached = (np.abs(np.split(each, count)).max(axis=1) for each in (start, largest))
-    begun[begun == 0] = begun.max() or 1.0
-    return np.minimum(np.repeat(np.maximum(begun, reached), len(start) // count), 1.0)
+    n, all_of = len(system.q) - system.varying, len(system.q)
+    halves = [slice(n), slice(all_of, all_of + n)] if _has_two_units(system, n) else [system.rows]
+    begun = [np.abs(start[half]).max(initial=0.0) for half in halves]
+    found = np.ones(len(start))  # of work, which has a unit of its own, and of what stays as it is
+    for half, size in zip(halves, begun, strict=True):
+        found[half] = max(size or max(begun) or 1.0, largest[half].max(initial=0.0))
+    return np.minimum(found, 1.0)
+
+
+def _has_two_units(system: HamiltonEquations, n: int) -> bool:
+    """Tell whether the two halves of a state are coordinates and momenta, or coordinates and their rates."""
+    if system.spare:
+        return False
+    rates = [system.graph.symbol(p) for p in system.p[:n]]
+    return system.canonical or [*system.velocity[:n]] == rates

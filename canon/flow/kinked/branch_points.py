@@ -22,7 +22,12 @@ if TYPE_CHECKING:
     from canon.flow.run.samples import Samples
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["branch_points", "check_branch_points"]
+__all__ = ["branch_points", "check_branch_points", "is_nonnegative", "may_meet_branch_points"]
+
+
+def may_meet_branch_points(system: HamiltonEquations) -> bool:
+    """Tell whether the equations hold a root that may come down to zero."""
+    return bool(_open_roots(system))
 
 
 def branch_points(system: HamiltonEquations, state: Array, t: float) -> tuple[PreparedEvent, ...]:
@@ -49,7 +54,7 @@ def branch_points(system: HamiltonEquations, state: Array, t: float) -> tuple[Pr
     )
 
 
-def check_branch_points(branches: Sequence[PreparedEvent], samples: Samples, rows: Sequence[int]) -> Samples:
+def check_branch_points(branches: Sequence[PreparedEvent], samples: Samples) -> Samples:
     """Return samples of a motion that has met none of these zeros.
 
     Raises
@@ -61,12 +66,11 @@ def check_branch_points(branches: Sequence[PreparedEvent], samples: Samples, row
     stopped = next((met.t for met in samples.crossings if met.event.action == "stop"), None)
     for met in samples.crossings:
         if met.event in events and met.t != stopped:
-            state = met.y[list(rows)]
             raise NonFiniteStateError(
-                f"the motion can't be continued after {time_and_state(met.t, state)}: {met.event.function} comes down "
+                f"the motion can't be continued after {time_and_state(met.t, met.y)}: {met.event.function} comes down "
                 "to zero there, and its series goes on as the other root; stop earlier, or by an Event",
                 met.t,
-                state,
+                met.y,
             )
     return samples
 
@@ -84,22 +88,22 @@ def _is_open_root(graph: Graph, node: int) -> bool:
     exponent = graph.nodes[operands[1]]
     if exponent.kind != "number" or exponent.value <= 0 or exponent.value.denominator % 2:
         return False
-    return not graph.is_constant(operands[0]) and not _is_nonnegative(graph, operands[0])
+    return not graph.is_constant(operands[0]) and not is_nonnegative(graph, operands[0])
 
 
-def _is_nonnegative(graph: Graph, node: int) -> bool:
+def is_nonnegative(graph: Graph, node: int) -> bool:
     """Tell whether a sum of even powers, of moduli, exponentials and positive numbers stands there."""
     kind, operands, value = graph.nodes[node]
     match kind:
         case "number":
             return value >= 0
         case "add":
-            return all(_is_nonnegative(graph, each) for each in operands)
+            return all(is_nonnegative(graph, each) for each in operands)
         case "mul":
-            return all(_is_nonnegative(graph, each) for each in operands)
+            return all(is_nonnegative(graph, each) for each in operands)
         case "pow":
             exponent = graph.nodes[operands[1]]
             even = exponent.kind == "number" and exponent.value.denominator == 1 and exponent.value % 2 == 0
-            return even or _is_nonnegative(graph, operands[0])
+            return even or is_nonnegative(graph, operands[0])
         case _:
             return kind in ("exp", "cosh")
