@@ -12,13 +12,14 @@ from canon.flow.adaptive.held_steps import spacing
 from canon.flow.adaptive.taylor_events import TaylorEvents
 from canon.flow.adaptive.taylor_orbit import TaylorOrbit, orbits_of
 from canon.flow.kinked.place import Place
-from canon.flow.kinked.regimes import HELD
+from canon.flow.kinked.signs import HELD
 from canon.flow.run.event import Event, PreparedEvent
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from canon.flow.kinked.regimes import Kinks, Regime, Signs
+    from canon.flow.kinked.regimes import Kinks, Regime
+    from canon.flow.kinked.signs import Signs
 
 __all__ = ["RegimeOrbit", "RegimeOrbits"]
 
@@ -64,8 +65,8 @@ class RegimeOrbits:
         regime, own = self.kinks.regime(signs), self.taylor_events
         ends = [(k, node, -signs[k]) for k, node in regime.functions.items()]
         if HELD in signs:
-            ways = self.kinks.ways_out(signs).values()
-            ends += [(signs.index(HELD), node, -1) for node in ways if regime.system.graph.symbols(node)]
+            ways = self.kinks.ways_out(signs)
+            ends += [(k, node, -1) for k, node in ways if regime.system.graph.symbols(node)]
         kinks, given, events = dict[int, int](), dict[int, PreparedEvent](), list[PreparedEvent]()
         for event, folded in zip(self.events, self.kinks.events(signs, self.events), strict=True):
             stops = (

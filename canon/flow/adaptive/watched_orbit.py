@@ -13,8 +13,9 @@ from canon.flow.adaptive.component_sizes import sizes_of
 from canon.flow.adaptive.zeros_in_step import TooFastError, Zero, zeros_in_step
 from canon.flow.kinked.next_regime import passage, signs_at_start
 from canon.flow.kinked.place import Place
-from canon.flow.kinked.regimes import HELD, Regime
+from canon.flow.kinked.regimes import Regime
 from canon.flow.kinked.saltation import saltation
+from canon.flow.kinked.signs import HELD
 from canon.flow.run.compiled_nodes import CompiledNodes, compiled_nodes
 from canon.flow.run.event import Crossing, Event
 from canon.flow.run.non_finite_state import NonFiniteStateError, PiledUpError, time_and_state
@@ -24,7 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from canon.array import Array
-    from canon.flow.kinked.regimes import Kinks, Signs
+    from canon.flow.kinked.regimes import Kinks
+    from canon.flow.kinked.signs import Signs
     from canon.flow.run.event import PreparedEvent
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
@@ -241,10 +243,7 @@ class WatchedOrbit:
     def _pass(self, k: int, which: int) -> None:
         assert self.kinks is not None
         watch = self._watch()
-        if HELD not in self.signs:
-            value, rate = watch.values.call(self.t, self.y)[[which, watch.count + which]]
-            if rate and math.isfinite(value / rate):
-                self.y = self.y - value / rate * np.nan_to_num(watch.rate.call(self.t, self.y))
+        self._put_on_zero(which)
         at = self._place()
         following = passage(self.kinks, self.signs, k, at, self.forward)
         self.y = self.y + saltation(self.kinks, self.signs, following, k, at)
@@ -258,6 +257,28 @@ class WatchedOrbit:
             told = Event(wall, name=f"{following.words} at {wall} = 0")
             y = at.y[self.system.rows]
             self.crossings.append(Crossing(told, self.t, y, rising=following.signs[k] > 0, after=after))
+
+    def _put_on_zero(self, which: int) -> None:
+        """Put the state onto the zero that it met, along its motion; where it leaves a zero, just beyond.
+
+        There its rate has no sign yet, and one that rounding gave it might lead back. Of a motion that hardly meets the
+        zero, as it turns round there, the nearest state on the zero is taken.
+        """
+        watch, at = self._watch(), self._place()
+        system, node = watch.regime.system, watch.functions[which]
+        value, rate = watch.values.call(self.t, self.y)[[which, watch.count + which]]
+        leaves = self.signs[watch.kinks[which]] == HELD
+        if leaves:
+            value += _ROUNDING * at.size(system, node)
+        away = -value / rate if rate else 0.0
+        moved = away * np.nan_to_num(watch.rate.call(self.t, self.y))
+        if rate and np.abs(moved).max() <= _AT_ONCE * np.abs(self.y).max():
+            self.y = self.y + moved
+            self.t = float(self.t + away) if leaves else self.t
+        elif not leaves:
+            slope = np.array(at.values(system, system.graph.gradient(node, system.inputs[:-1])))
+            square = float(slope @ slope)
+            self.y = self.y - (value / square * slope if 0 < square < math.inf else 0.0)
 
     def _meet(self, event: PreparedEvent, *, rising: bool) -> None:
         y, after = self.y[self.system.rows], None
@@ -350,8 +371,8 @@ class WatchedOrbit:
             regime = self.kinks.regime(self.signs)
             folded, looked = self.kinks.events(self.signs, self.events), [*regime.functions.items()]
             if HELD in self.signs:
-                held, ways = self.signs.index(HELD), self.kinks.ways_out(self.signs).values()
-                looked += [(held, node) for node in ways if self.system.graph.symbols(node)]
+                ways = self.kinks.ways_out(self.signs)
+                looked += [(k, node) for k, node in ways if self.system.graph.symbols(node)]
         functions = [*(node for _, node in looked), *(event.value for event in folded)]
         rates = [*(regime.rate(node) for _, node in looked), *(event.rate for event in folded)]
         # Rates without a series at a zero have no value beyond it: those of the next regime are taken there.

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.flow.kinked.regimes import HELD, Signs, flipped
 from canon.flow.kinked.rest import is_kept, nothing_moves
+from canon.flow.kinked.signs import HELD, flipped, held_in, put
 from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 
 if TYPE_CHECKING:
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from canon.array import Array
     from canon.flow.kinked.place import Place
     from canon.flow.kinked.regimes import Kinks, Regime
+    from canon.flow.kinked.signs import Signs
 
 __all__ = ["Passage", "passage", "settled", "signs_at_start", "vanishing"]
 
@@ -113,13 +114,7 @@ def passage(kinks: Kinks, signs: Signs, k: int, at: Place, forward: int) -> Pass
         The motion is not determined there.
     """
     if HELD in signs:
-        held = signs.index(HELD)
-        back = {side: (*signs[:held], side, *signs[held + 1 :]) for side in (1, -1)}
-        if k != held and nothing_moves(kinks, back[1], held, at):
-            return _beside_rest(kinks, back[1], k, held, at, forward)
-        if k != held:  # another function vanishes meanwhile: look again from one side
-            return Passage(_goes_on(kinks, flipped(back[1], k), [k, held], at, forward), words="slips")
-        return Passage(_goes_on(kinks, back[1], [k], at, forward), words="slips")
+        return _from_held(kinks, signs, k, at, forward)
     fresh = {j for j in kinks.mattering(signs) if j not in kinks.nested}
     beyond = settled(kinks, flipped(signs, k), fresh | {k}, at)
     jump = _jump(kinks, signs, beyond, at)
@@ -127,11 +122,25 @@ def passage(kinks: Kinks, signs: Signs, k: int, at: Place, forward: int) -> Pass
         return _refracted(kinks, signs, beyond, k, jump, at)
     zero = sorted({k, *vanishing(kinks, signs, at), *vanishing(kinks, beyond, at)})
     following = _goes_on(kinks, beyond, zero, at, forward)
-    if HELD not in following:
+    held = held_in(following)
+    if not held:
         return Passage(following)
-    held = following.index(HELD)
-    rests = None if kinks.rate_at_rest(following, held) is None else kinks.row(held)
-    return Passage(following, words="sticks", rests=rests)
+    rests = len(held) == 1 and kinks.rate_at_rest(following, held[0]) is not None
+    return Passage(following, words="sticks", rests=kinks.row(held[0]) if rests else None)
+
+
+def _from_held(kinks: Kinks, signs: Signs, k: int, at: Place, forward: int) -> Passage:
+    """Return what follows where a function leaves its zero, or another meets its own meanwhile."""
+    held = held_in(signs)
+    beside = tuple(sign or 1 for sign in signs)
+    if k in held:
+        following = _goes_on(kinks, beside, held, at, forward, leaves=k)
+        return Passage(following, words="slips")
+    if len(held) == 1 and nothing_moves(kinks, beside, held[0], at):
+        return _beside_rest(kinks, beside, k, held[0], at, forward)
+    following = _goes_on(kinks, flipped(beside, k), sorted({k, *held}), at, forward)
+    more = len(held_in(following)) - len(held)
+    return Passage(following, words="sticks" if more > 0 else "slips" if more < 0 else "")
 
 
 def _beside_rest(kinks: Kinks, signs: Signs, k: int, held: int, at: Place, forward: int) -> Passage:
@@ -139,7 +148,7 @@ def _beside_rest(kinks: Kinks, signs: Signs, k: int, held: int, at: Place, forwa
     following = _goes_on(kinks, flipped(signs, k), [k], at, forward)
     if HELD in following:
         raise _lost(kinks, [k, held], at, "several kinks hold the motion at once")
-    return Passage((*following[:held], HELD, *following[held + 1 :]))
+    return Passage(put(following, held, HELD))
 
 
 def settled(kinks: Kinks, signs: Signs, known: set[int], at: Place) -> Signs:
@@ -155,14 +164,22 @@ def settled(kinks: Kinks, signs: Signs, known: set[int], at: Place) -> Signs:
     return tuple(sign if k in mattering else 1 for k, sign in enumerate(signs))
 
 
-def _goes_on(kinks: Kinks, signs: Signs, zero: Sequence[int], at: Place, forward: int) -> Signs:
-    """Return the regime that goes on from where some functions vanish; others take the signs they have."""
+def _goes_on(
+    kinks: Kinks, signs: Signs, zero: Sequence[int], at: Place, forward: int, leaves: int | None = None
+) -> Signs:
+    """Return the regime that goes on from where some functions vanish, one of which may be known to leave its zero.
+
+    Others take the signs they have.
+    """
     if len(zero) > _MOST_TOGETHER:
-        raise _lost(kinks, zero, at, f"{len(zero)} kinks are met at one instant")
+        together = _held_together(kinks, signs, zero, at, forward, leaves)
+        if together is None:
+            raise _lost(kinks, zero, at, f"{len(zero)} kinks are met at one instant")
+        return together
     if len(zero) == 1 and HELD not in signs and nothing_moves(kinks, signs, zero[0], at):
         if not is_kept(kinks, zero[0], at, forward):
             raise _lost(kinks, zero, at, "the motion is not determined: it may rest, or leave at any time")
-        return (*signs[: zero[0]], HELD, *signs[zero[0] + 1 :])
+        return put(signs, zero[0], HELD)
     found = {
         each for each in _candidates(kinks, signs, zero, at) if _consistent(kinks, each, zero, at, forward)
     }
@@ -174,9 +191,49 @@ def _goes_on(kinks: Kinks, signs: Signs, zero: Sequence[int], at: Place, forward
         if all(np.allclose(rates[0], other, rtol=_JUMP, atol=0.0) for other in rates[1:]):
             return first
         raise _lost(kinks, zero, at, "the motion is not determined: it may leave the kink to either side")
-    if len(zero) == 1 and HELD not in signs:
-        return (*signs[: zero[0]], HELD, *signs[zero[0] + 1 :])
-    raise _lost(kinks, zero, at, "several kinks hold the motion at once")
+    if len(zero) == 1:
+        return put(signs, zero[0], HELD)
+    together = _held_together(kinks, signs, zero, at, forward, leaves)
+    if together is None:
+        raise _lost(kinks, zero, at, "several kinks hold the motion at once, and nothing tells which and how")
+    return together
+
+
+def _held_together(
+    kinks: Kinks, signs: Signs, zero: Sequence[int], at: Place, forward: int, leaves: int | None
+) -> Signs | None:
+    """Return the regime in which some of several vanishing functions stay zero, and the others leave it.
+
+    All are held at first, but for the one that leaves. Of those whose shares are beyond ±1 the farthest goes first.
+    """
+    held = [k for k in zero if k != leaves]
+    sides = (1,) if leaves is None else (1, -1)
+    for side in sides:
+        each = signs if leaves is None else put(signs, leaves, side)
+        for k in held:
+            each = put(each, k, HELD)
+        found = _relaxed(kinks, each, at)
+        if found is not None and _consistent(
+            kinks, found, [k for k in zero if found[k] != HELD], at, forward
+        ):
+            return found
+    return None
+
+
+def _relaxed(kinks: Kinks, signs: Signs, at: Place) -> Signs | None:
+    """Return signs of which no held function has a share beyond ±1."""
+    while held_in(signs):
+        shares = kinks.shares(signs)
+        if shares is None:
+            return None
+        values = at.values(kinks.system, [*shares.values()])
+        k, share = max(zip(shares, values, strict=True), key=lambda pair: abs(pair[1]))
+        if not math.isfinite(share):
+            return None
+        if abs(share) <= 1 + _ROUNDING:
+            return signs
+        signs = put(signs, k, 1 if share > 0 else -1)
+    return signs
 
 
 def _candidates(kinks: Kinks, signs: Signs, zero: Sequence[int], at: Place) -> Iterator[Signs]:

@@ -11,30 +11,28 @@ from __future__ import annotations
 import functools
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from canon.cached_property import cached_property
 from canon.expression.graph.algebra import factored
+from canon.flow.kinked.equivalent_control import shares_that_hold
+from canon.flow.kinked.signs import HELD, held_in, put
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from canon.expression.graph.graph import Graph, Node
+    from canon.flow.kinked.signs import Signs
     from canon.flow.run.event import PreparedEvent
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["HELD", "Kinks", "Regime", "Signs", "kinks_of"]
+__all__ = ["Kinks", "Regime", "kinks_of"]
 
 _KEPT = 256
 
 _DERIVATIVES = 6
 """So many time derivatives are looked through for the first that differs on two sides."""
-
-Signs = tuple[int, ...]
-"""1 or −1 for each switching function; :data:`HELD` for one that stays zero."""
-
-HELD = 0
-"""In place of a sign: the motion stays on the zero, as a block that sticks."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,6 +109,10 @@ class Kinks:
         return {}
 
     @cached_property
+    def _shares(self) -> dict[Signs, Mapping[int, int] | None]:
+        return {}
+
+    @cached_property
     def _mattering(self) -> dict[Signs, tuple[int, ...]]:
         return {}
 
@@ -174,6 +176,8 @@ class Kinks:
         A. F. Filippov, Differential Equations with Discontinuous Righthand Sides, Kluwer 1988, § 4. It ends where one
         side does not lead there any more.
         """
+        if len(held_in(signs)) > 1:
+            return self._held_together(signs)
         k, graph = signs.index(HELD), self.system.graph
         if self.rate_at_rest(signs, k) is not None:
             return self._resting(signs, k)
@@ -199,6 +203,39 @@ class Kinks:
         system = replace(above.system, written=above.system.moving_by(rates[:half], rates[half:]))
         others = {j: node for j, node in above.functions.items() if j != k}
         return Regime(signs, system, others)
+
+    def _held_together(self, signs: Signs) -> Regime:
+        """Return the motion on the zeros of several functions at once.
+
+        Raises
+        ------
+        ValueError
+            It is not determined.
+        """
+        graph, shares, beside = (
+            self.system.graph,
+            self.shares(signs),
+            self.regime(_on_their_positive_side(signs)),
+        )
+        if shares is None:
+            zeros = ", ".join(f"{graph.to_sympy(self.functions[k])} = 0" for k in held_in(signs))
+            raise ValueError(
+                f"several kinks hold the motion at once, {zeros}, and nothing tells by which forces"
+            )
+        rates = self.folded(signs, self._rates(self.system), shares)
+        for k in shares:
+            if graph.nodes[self.functions[k]].kind == "symbol":
+                rates[self.row(k)] = graph.zero
+        half = len(self.system.velocity)
+        system = replace(beside.system, written=beside.system.moving_by(rates[:half], rates[half:]))
+        return Regime(signs, system, {j: node for j, node in beside.functions.items() if j not in shares})
+
+    def shares(self, signs: Signs) -> Mapping[int, int] | None:
+        """Return what stands in place of the signs of several functions that are held; None where nothing tells."""
+        if signs not in self._shares:
+            beside = self.regime(_on_their_positive_side(signs))
+            self._shares[signs] = shares_that_hold(self, signs, beside)
+        return self._shares[signs]
 
     def rate_at_rest(self, signs: Signs, k: int) -> int | None:
         """Return the rate of a variable where it is 0, of one whose rate has a root there and does not jump.
@@ -231,21 +268,26 @@ class Kinks:
         return self.system.inputs.index(symbol)
 
     def _sides(self, signs: Signs, k: int) -> tuple[Regime, Regime]:
-        above, below = (self.regime((*signs[:k], side, *signs[k + 1 :])) for side in (1, -1))
+        above, below = (self.regime(put(signs, k, side)) for side in (1, -1))
         return above, below
 
-    def ways_out(self, signs: Signs) -> dict[int, int]:
-        """Return the functions whose zeros end a motion that stays on a zero, by the sign of the side it leaves to.
+    def ways_out(self, signs: Signs) -> list[tuple[int, int]]:
+        """Return which function leaves its zero where one of these functions vanishes that end a motion on zeros.
 
         Each is positive while its side leads to the zero. Nothing ends the rest of what nothing moves.
         """
-        k, graph = signs.index(HELD), self.system.graph
+        graph = self.system.graph
+        if len(held_in(signs)) > 1:
+            shares = self.shares(signs) or {}
+            ends = [(k, side) for k, share in shares.items() for side in (share, graph.negative(share))]
+            return [(k, graph.add((graph.one, side))) for k, side in ends]
+        k = signs.index(HELD)
         if self.rate_at_rest(signs, k) is not None:
-            return {}
+            return []
         above, below = self._sides(signs, k)
         zero = self.folded(above.signs, [self.functions[k]])[0]
         down, up = self._ways_apart(above, below, zero)
-        return {1: graph.negative(down), -1: up}
+        return [(k, graph.negative(down)), (k, up)]
 
     def _ways_apart(self, above: Regime, below: Regime, zero: int) -> tuple[int, int]:
         """Return the first time derivatives of a switching function that differ on its two sides."""
@@ -259,15 +301,19 @@ class Kinks:
             "to which side it leaves; stop it there with an Event(…, action='stop')"
         )
 
-    def folded(self, signs: Signs, nodes: Sequence[int]) -> list[int]:
-        """Return nodes with the signs of a regime put in."""
+    def folded(
+        self, signs: Signs, nodes: Sequence[int], shares: Mapping[int, int] = MappingProxyType({})
+    ) -> list[int]:
+        """Return nodes with the signs of a regime put in, and shares in place of those of functions that are held."""
         graph, known = self.system.graph, dict[int, int]()
         for kink, (k, same) in self.kinks.items():
             node, sign = graph.nodes[kink], signs[k] * same
-            if node.kind == "sign":
-                known[kink] = graph.number(sign)
-            else:
+            if node.kind == "Abs":
                 known[kink] = graph.scaled(sign, graph.substitute(node.operands, known)[0])
+            elif k in shares:
+                known[kink] = graph.scaled(same, shares[k])
+            else:
+                known[kink] = graph.number(sign)
         return graph.substitute(nodes, known)
 
     def events(self, signs: Signs, events: Sequence[PreparedEvent]) -> tuple[PreparedEvent, ...]:
@@ -296,9 +342,8 @@ class Kinks:
         return [*system.velocity, *system.force]
 
 
-def flipped(signs: Signs, k: int) -> Signs:
-    """Return the signs with one of them changed."""
-    return (*signs[:k], -signs[k], *signs[k + 1 :])
+def _on_their_positive_side(signs: Signs) -> Signs:
+    return tuple(sign or 1 for sign in signs)
 
 
 @functools.lru_cache(maxsize=_KEPT)

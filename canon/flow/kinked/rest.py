@@ -10,11 +10,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from canon.flow.kinked.regimes import HELD
+from canon.flow.kinked.signs import HELD, put
 
 if TYPE_CHECKING:
     from canon.flow.kinked.place import Place
-    from canon.flow.kinked.regimes import Kinks, Signs
+    from canon.flow.kinked.regimes import Kinks
+    from canon.flow.kinked.signs import Signs
 
 __all__ = ["is_kept", "nothing_moves"]
 
@@ -27,7 +28,7 @@ def nothing_moves(kinks: Kinks, signs: Signs, k: int, at: Place) -> bool:
     rate = kinks.rate_at_rest(signs, k)
     if rate is None or rate == kinks.system.graph.zero:
         return rate is not None
-    resting = kinks.regime((*signs[:k], HELD, *signs[k + 1 :])).system
+    resting = kinks.regime(put(signs, k, HELD)).system
     rates = [rate, *resting.velocity, *resting.force]
     return kinks.system.autonomous and not any(at.values(resting, rates))
 
