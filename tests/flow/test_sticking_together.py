@@ -1,5 +1,7 @@
 """Several blocks that dry friction holds at once, each by the force that keeps it at rest."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -52,9 +54,9 @@ def time_stepping(forces, friction, q, steps, h):
 def pulled_chain(n, holds):
     """Burridge's and Knopoff's model of an earthquake: blocks between springs, the last of them pulled slowly."""
     t, blocks = sp.Symbol("t", real=True), coordinates(" ".join(f"x{k}" for k in range(n)))
-    springs = sum((b - a) ** 2 for a, b in zip(blocks, blocks[1:])) + (t / 20 - blocks[-1]) ** 2 / 2
+    springs = sum((b - a) ** 2 for a, b in pairwise(blocks)) + (t / 20 - blocks[-1]) ** 2 / 2
     kinetic = sum(each.dot**2 for each in blocks) / 2
-    forces = [-sign(each.dot) * hold for each, hold in zip(blocks, holds)]
+    forces = [-sign(each.dot) * hold for each, hold in zip(blocks, holds, strict=True)]
     return Lagrangian(kinetic - springs, list(blocks), t=t, forces=forces)
 
 

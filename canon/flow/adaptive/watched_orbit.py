@@ -242,7 +242,6 @@ class WatchedOrbit:
 
     def _pass(self, k: int, which: int) -> None:
         assert self.kinks is not None
-        watch = self._watch()
         self._put_on_zero(which)
         at = self._place()
         following = passage(self.kinks, self.signs, k, at, self.forward)
