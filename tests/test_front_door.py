@@ -59,6 +59,20 @@ def loaded_after(statement: str) -> set[str]:
     return {name.split(".")[0] for name in modules_after(statement)}
 
 
+def test_a_choice_of_methods_loads_neither_constraints_nor_proofs():
+    loaded = modules_after("from canon.study import choose\nchoose")
+    assert "canon.study.method_choice.candidate" in loaded
+    assert (
+        not {
+            "canon.proof.vanish",
+            "canon.flow.equations.lagrangian_motion",
+            "canon.flow.equations.constrained.holonomic_motion",
+            "canon.mechanics.lagrange.constraint",
+        }
+        & loaded
+    )
+
+
 def test_import_canon_loads_no_room():
     assert not {"sympy", "numpy", "scipy", "heyoka", "llvmlite", "matplotlib", "flint"} & loaded_after(
         "import canon"

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from canon.expression.graph.piecewise_form import without_pieces
+from canon.flow.method.lie_poisson_splitting import NoLiePoissonPartsError
 from canon.kernel.program.lie_poisson_parts import CommonTurn, Kick, LiePoissonParts, PlaneTurns, TurningBlock
 from canon.kernel.program.program import exact_value
 from canon.mechanics.algebra.substitution import entry
@@ -27,16 +28,12 @@ if TYPE_CHECKING:
     from canon.flow.equations.first_order_motion import MovingSystem
     from canon.mechanics.hamilton.poisson_system import PoissonSystem
 
-__all__ = ["LiePoissonSearch", "NoLiePoissonPartsError", "brackets_on", "row_product"]
+__all__ = ["LiePoissonSearch", "brackets_on", "row_product"]
 
 Plane = tuple[int, int, Fraction]
 """Variables i < j and c, where ẋᵢ = −c r xⱼ and ẋⱼ = c r xᵢ."""
 
 _OTHERS = "Taylor, DOP853, RK4 and Gauss apply"
-
-
-class NoLiePoissonPartsError(ValueError):
-    """H is no sum of parts that a Lie–Poisson splitting moves by; the message says why."""
 
 
 def brackets_on(graph: Graph, system: PoissonSystem) -> list[list[int]]:

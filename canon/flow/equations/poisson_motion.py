@@ -10,12 +10,8 @@ import sympy as sp
 from canon.expression.graph.graph import Graph
 from canon.expression.graph.piecewise_form import without_pieces
 from canon.flow.equations.first_order_motion import FirstOrderMotion, from_any_start
-from canon.flow.equations.lie_poisson_search import (
-    LiePoissonSearch,
-    NoLiePoissonPartsError,
-    brackets_on,
-    row_product,
-)
+from canon.flow.equations.lie_poisson_search import LiePoissonSearch, brackets_on, row_product
+from canon.flow.method.lie_poisson_splitting import NoLiePoissonPartsError
 from canon.mechanics.hamilton.poisson_system import PoissonSystem
 
 if TYPE_CHECKING:

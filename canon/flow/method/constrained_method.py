@@ -8,7 +8,15 @@ from typing import Any
 from canon.flow.method.composition import check_order, weights_of_order
 from canon.flow.method.engine import FIXED_STEPS
 
-__all__ = ["NonholonomicLeapfrog", "Rattle"]
+__all__ = ["NonholonomicLeapfrog", "NotForLeapfrogError", "NotForRattleError", "Rattle"]
+
+
+class NotForLeapfrogError(ValueError):
+    """The constrained system is not one that the nonholonomic leapfrog is for; the message says why."""
+
+
+class NotForRattleError(ValueError):
+    """The constrained system is not one that RATTLE is for; the message says why."""
 
 
 @dataclass(frozen=True)

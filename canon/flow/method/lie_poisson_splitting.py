@@ -8,7 +8,11 @@ from typing import Any
 from canon.flow.method.composition import check_order, weights_of_order
 from canon.flow.method.engine import FIXED_STEPS
 
-__all__ = ["LiePoissonSplitting"]
+__all__ = ["LiePoissonSplitting", "NoLiePoissonPartsError"]
+
+
+class NoLiePoissonPartsError(ValueError):
+    """H is no sum of parts that a Lie–Poisson splitting moves by; the message says why."""
 
 
 @dataclass(frozen=True)

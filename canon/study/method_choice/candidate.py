@@ -10,13 +10,14 @@ import numpy as np
 from sympy import Pow
 
 from canon.flow.checked_request import hamilton_equations_of
-from canon.flow.equations.constrained.holonomic_motion import NotForRattleError
-from canon.flow.equations.constrained.nonholonomic_motion import NotForLeapfrogError
-from canon.flow.equations.lie_poisson_search import NoLiePoissonPartsError
-from canon.flow.fixed_step.gauge_integrals import gauge_shifts
-from canon.flow.method.constrained_method import NonholonomicLeapfrog, Rattle
+from canon.flow.method.constrained_method import (
+    NonholonomicLeapfrog,
+    NotForLeapfrogError,
+    NotForRattleError,
+    Rattle,
+)
 from canon.flow.method.engine import FICTITIOUS_TIME
-from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting
+from canon.flow.method.lie_poisson_splitting import LiePoissonSplitting, NoLiePoissonPartsError
 from canon.flow.method.magnetic_methods import Boris, MagneticSplitting
 from canon.flow.method.method import DOP853, RK4, Gauss, Splitting, Taylor, TimeTransformed
 from canon.flow.method.nonseparable_splitting import ExtendedPhaseSpace, SemiexplicitSplitting
@@ -26,11 +27,8 @@ from canon.flow.propagation import is_separable
 from canon.flow.request import Request
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.system_request import any_task, is_hamiltonian
-from canon.kernel.magnetic.magnetic_form import NotMagneticError, magnetic_form
 from canon.kernel.schemes.splitting_schemes import SCHEMES
 from canon.kernel.solvable.solvable_parts import Planets, Quadratic, UnsolvableError, solvable_part
-from canon.mechanics.hamilton.poisson_system import PoissonSystem
-from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 from canon.study.method_choice.error_law import expected_error, order_of
 from canon.study.method_choice.pilot_run import Pilot, pilot, seconds_per_time
 from canon.study.method_choice.resolution import least_error
@@ -145,6 +143,9 @@ def candidate_methods(question: Question) -> tuple[Method, ...]:
 
 def _of_charges(question: Question) -> tuple[Method, ...]:
     """Return methods for H = Σ (p − A)²/2m + φ, charges and rotating frames, where H is that."""
+    from canon.flow.fixed_step.gauge_integrals import gauge_shifts
+    from canon.kernel.magnetic.magnetic_form import NotMagneticError, magnetic_form
+
     system = hamilton_equations_of(question.hamiltonian, question.values)
     try:
         magnetic_form(system)
@@ -160,6 +161,8 @@ def _of_charges(question: Question) -> tuple[Method, ...]:
 
 def _of_constraints(question: Question) -> tuple[Method, ...]:
     """Return methods that keep constraints themselves, where they apply."""
+    from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
+
     system: Any = question.hamiltonian
     if not isinstance(system, ConstrainedLagrangian):
         return ()
@@ -174,6 +177,8 @@ def _of_rotations(question: Question) -> tuple[Method, ...]:
 
     Those are no Poisson maps, but keep Casimir functions that are quadratic.
     """
+    from canon.mechanics.hamilton.poisson_system import PoissonSystem
+
     system: Any = question.hamiltonian
     if not isinstance(system, PoissonSystem):
         return ()

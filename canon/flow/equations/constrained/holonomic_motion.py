@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from canon.expression.symbols.user_input import counted
 from canon.flow.equations.lagrangian_motion import values_at_start
 from canon.flow.equations.linear_equations import SingularAtStartError, solved_from_start
+from canon.flow.method.constrained_method import NotForRattleError
 from canon.kernel.program.holonomic_system import HolonomicSystem
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 
@@ -19,11 +20,7 @@ if TYPE_CHECKING:
 
     from canon.flow.equations.first_order_motion import FirstOrderMotion, MovingSystem
 
-__all__ = ["NotForRattleError", "with_constraints_kept"]
-
-
-class NotForRattleError(ValueError):
-    """The constrained system is not one that RATTLE is for; the message says why."""
+__all__ = ["with_constraints_kept"]
 
 
 def with_constraints_kept(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.flow.equations.lagrangian_motion import values_at_start
+from canon.flow.method.constrained_method import NotForLeapfrogError
 from canon.kernel.program.nonholonomic_system import NonholonomicSystem
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 
@@ -19,11 +20,7 @@ if TYPE_CHECKING:
 
     from canon.flow.equations.first_order_motion import FirstOrderMotion, MovingSystem
 
-__all__ = ["NotForLeapfrogError", "with_velocity_constraints_kept"]
-
-
-class NotForLeapfrogError(ValueError):
-    """The constrained system is not one that the nonholonomic leapfrog is for; the message says why."""
+__all__ = ["with_velocity_constraints_kept"]
 
 
 def with_velocity_constraints_kept(
