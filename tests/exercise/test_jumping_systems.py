@@ -82,7 +82,7 @@ def test_a_motion_on_one_side_of_a_step_is_one():
 
 
 @pytest.mark.parametrize(
-    ("system", "right", "wrong"),
+    ("system", "beside", "across"),
     [
         (OSCILLATOR, "sign(q**2 + p**2 - 1)*(q**2 + p**2)", "sign(q**2 - p**2 - 1)*(q**2 + p**2)"),
         (OSCILLATOR, "Piecewise((q**2 + p**2, q**2 + p**2 > 4), (1, True))",
@@ -91,20 +91,28 @@ def test_a_motion_on_one_side_of_a_step_is_one():
         (FREE, "acot(px)*py", "acot(x)*py"),
     ],
 )  # fmt: skip
-def test_a_constant_may_jump_where_no_motion_crosses(system, right, wrong):
-    assert said("constant-of-motion", **system, I=right)[0] == "holds"
-    assert said("constant-of-motion", **system, I=wrong)[0] == "fails"
+def test_a_constant_is_continuous_on_the_domain_even_where_no_motion_crosses(system, beside, across):
+    """SHEETS: constants of the motion are continuous on the domain; on each side of the border there is one."""
+    assert said("constant-of-motion", **system, I=beside)[0] == "fails"
+    assert said("constant-of-motion", **system, I=across)[0] == "fails"
 
 
-def test_a_number_on_each_side_of_a_constant_still_says_nothing():
+def test_on_one_side_of_a_border_it_is_a_constant():
+    keys = {**OSCILLATOR, "domain": ["q**2 + p**2 > 1"]}
+    assert said("constant-of-motion", **keys, I="sign(q**2 + p**2 - 1)*(q**2 + p**2)")[0] == "holds"
+    assert said("constant-of-motion", **keys, I="sign(q**2 + p**2 - 2)*(q**2 + p**2)")[0] == "fails"
+
+
+def test_a_number_on_each_side_of_a_constant_says_nothing():
     status, told = said("constant-of-motion", **OSCILLATOR, I="sign(q**2 + p**2 - 1)")
     assert status == "fails"
     assert "says nothing about the motion" in told
 
 
-def test_casimirs_may_jump_at_one_another():
+def test_casimirs_are_continuous_too():
     body = {"x": ["a", "b", "c"], "pairs": [{"u": "a", "v": "b", "value": "c"}, {"u": "b", "v": "c", "value": "a"},
             {"u": "c", "v": "a", "value": "b"}]}  # fmt: skip
     size = "(a**2 + b**2 + c**2)"
-    assert said("jacobi-identity", **body, casimirs=[f"sign({size} - 1)*{size}"])[0] == "holds"
+    assert said("jacobi-identity", **body, casimirs=[f"sign({size} - 1)*{size}"])[0] == "fails"
+    assert said("jacobi-identity", **body, casimirs=[f"sign({size} + 1)*{size}"])[0] == "holds"
     assert said("jacobi-identity", **body, casimirs=[f"sign(a)*{size}"])[0] == "fails"

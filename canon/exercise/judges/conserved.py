@@ -53,9 +53,9 @@ def conserved_or_not(reading: Reading) -> Iterator[Question]:
             if key == "conserved":
                 yield Same((Part(f"d/dt ({I})", rate),), reading.domain, said=_not_conserved)
                 check_kept_at_jumps(I, system, reading.domain)
-                yield from constants_are_continuous(I, state, reading.domain, rate_of, system_of(reading))
+                yield from constants_are_continuous(I, state, reading.domain, system_of(reading))
             else:
-                _check_continuous(I, state, reading.domain, rate_of)
+                _check_continuous(I, state, reading.domain)
                 if vanishes_off_kinks(rate, reading.domain, SIDE_SECONDS).holds:
                     check_kept_at_jumps(I, system, reading.domain)
                 why = f"{I} is conserved: its rate vanishes on every motion"
@@ -84,9 +84,7 @@ def same_everywhere(
     return Same(parts or (Part("0", sp.S.Zero),), domain)
 
 
-def _check_continuous(
-    I: Expr, state: Sequence[Symbol], domain: Domain, rates: Callable[[Expr], Sequence[Expr]]
-) -> None:
+def _check_continuous(I: Expr, state: Sequence[Symbol], domain: Domain) -> None:
     """Refuse quantities such as |x|/x, whose rate vanishes where it exists and which jump all the same.
 
     Raises
@@ -94,7 +92,7 @@ def _check_continuous(
     Undecided
         Where the quantity may jump.
     """
-    if not all(verdict.holds for verdict in constants_are_continuous(I, state, domain, rates)):
+    if not all(verdict.holds for verdict in constants_are_continuous(I, state, domain)):
         raise Undecided(f"{I} may jump, which its rate does not show; narrow the domain to where it does not")
 
 

@@ -99,7 +99,7 @@ def constant_of_motion(reading: Reading) -> Iterator[Question]:
         there = substitute(I, branch.values)
         yield Same((Part("dI/dt", *rate_of(I), through=branch.values),), branch.domain)
         check_kept_at_jumps(there, system, branch.domain)
-        yield from constants_are_continuous(there, (*rates, t), branch.domain, rate_of, system_of(reading))
+        yield from constants_are_continuous(there, (*rates, t), branch.domain, system_of(reading))
     trivial = tuple(same_everywhere((I,), tuple(rates), b.domain, b.values) for b in branches)
     yield Tells(trivial, "it follows from `restrict` alone" if restrictions else NOT_OF_THE_STATE)
 

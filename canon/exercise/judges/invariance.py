@@ -208,7 +208,7 @@ def jacobi_identity(reading: Reading) -> Iterator[Question]:
     for i, C in enumerate(casimirs):
         kept = [Part(f"{{{s}, casimirs[{i}]}}", bracket) for s, bracket in zip(x, brackets(C), strict=True)]
         yield Same(tuple(kept), reading.domain, _no_answer, is_instead)
-        yield from constants_are_continuous(C, x, reading.domain, brackets)
+        yield from constants_are_continuous(C, x, reading.domain)
     if casimirs:
         yield Tells(
             (same_everywhere(casimirs, x, reading.domain),), "a number has vanishing brackets in any system"
