@@ -21,7 +21,7 @@ __all__ = ["AdvancedStates", "Interruption", "advance_orbits"]
 _SLICE_SECONDS = 0.1
 """Between calls of compiled code Python can handle an interruption and report progress."""
 
-_FIRST_SLICE = 1 << 12
+_FIRST_SLICE = 1 << 11
 """So many numbers are moved in the first slice, or 64 steps: next to nothing, whatever a step costs."""
 
 _MANY = 2048
