@@ -109,7 +109,7 @@ def test_an_interruption_between_slices_keeps_what_lies_before(watched):
 
     def interrupted(fraction):
         calls.append(fraction)
-        if len(calls) == 3:
+        if len(calls) == 4:
             raise KeyboardInterrupt
 
     whole = propagate(

@@ -21,9 +21,6 @@ __all__ = ["AdvancedStates", "Interruption", "advance_orbits"]
 _SLICE_SECONDS = 0.1
 """Between calls of compiled code Python can handle an interruption and report progress."""
 
-_FIRST_SLICE = 1 << 11
-"""So many numbers are moved in the first slice, or 64 steps: next to nothing, whatever a step costs."""
-
 _MANY = 2048
 """From so many samples on, a run is worth the 10 ms for which the loop that takes them in one call is compiled."""
 
@@ -166,8 +163,7 @@ class _Slices:
         progress: Callable[[float], None],
     ) -> None:
         self.buffers, self.rows, self.progress = buffers, rows, progress
-        self.done, self.last = first, last
-        self.steps = max(64, _FIRST_SLICE // buffers.y.size)
+        self.done, self.last, self.steps = first, last, 64
         self._begin()
 
     def go_to(self, stop: int) -> None:
