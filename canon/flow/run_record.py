@@ -13,8 +13,15 @@ from canon.expression.symbols.user_input import counted, listed
 from canon.flow.equations.contact_regimes import check_contacts, impacts_pile_up, regimes_of
 from canon.flow.equations.left_out import check_left_out
 from canon.flow.integrate import integrate, silently
+from canon.flow.method.adaptive_methods import DOP853, Taylor
 from canon.flow.run.non_finite_state import NonFiniteStateError, PiledUpError, named
-from canon.flow.run.observables_along import measured, measured_with_energy, size_of_terms, warn_of_jumps
+from canon.flow.run.observables_along import (
+    IMPLAUSIBLE,
+    measured,
+    measured_with_energy,
+    size_of_terms,
+    warn_of_jumps,
+)
 from canon.flow.run.samples import Samples, Statistics
 from canon.flow.system.named_values import node_along, variables_of
 from canon.frozen_mapping import FrozenMapping
@@ -29,10 +36,14 @@ if TYPE_CHECKING:
     from canon.array import Array
     from canon.flow.equations.contact_regimes import ContactRegime
     from canon.flow.equations.first_order_motion import MovingSystem
+    from canon.flow.method.method import Method
     from canon.flow.task import Task
 
 __all__ = ["Energies", "Measured", "RunRecord", "recorded"]
 
+
+_MISSED, _TOLERANCES = 1e-4, 1e4
+"""A method that chooses its steps has missed something where it loses such a part of the energy, or so many tolerances."""
 
 _ROUNDING = 2.0**-44
 """A starting energy below this part of the size of H's terms is what rounding the start has left of zero."""
@@ -307,6 +318,13 @@ def recorded(
         raise named(lost, [s.name for s in variables_of(task.system)]) from None
 
 
+def _at_once(method: Method) -> float:
+    """Return which part of the energy no method loses from one sample to the next unless it has missed something."""
+    if not isinstance(method, Taylor | DOP853):
+        return IMPLAUSIBLE
+    return min(IMPLAUSIBLE, max(_MISSED, _TOLERANCES * (method.tolerance or 0.0)))
+
+
 def _carried_out(
     task: Task, progress: Callable[[float], None], so_far: Samples | None, moving: MovingSystem | None
 ) -> RunRecord:
@@ -320,7 +338,8 @@ def _carried_out(
     defect = record.measured.defect
     if task.system.autonomous and not any(met.after is not None for met in found.crossings):
         start = np.zeros(1) if moving is not None else record.energies.values[0].reshape(-1)
-        warn_of_jumps(task.system, found, start, defect.reshape(len(defect), -1))
+        change = defect.reshape(len(defect), -1)
+        warn_of_jumps(task.system, found, start, change, _at_once(task.method))
     if moving is not None:
         check_left_out(moving, found)
         check_contacts(moving, found)

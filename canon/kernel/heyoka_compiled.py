@@ -16,6 +16,7 @@ def compiled_integrator(equations: Any, state: Any, **options: Any) -> Any:
     import heyoka as hy
 
     _keep_apart()
+    hy.set_logger_level_error()  # its warnings, of steps that canon reports itself, go to standard output
     return hy.taylor_adaptive(equations, state, **options)
 
 

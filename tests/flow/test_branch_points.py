@@ -2,12 +2,14 @@
 
 import numpy as np
 import pytest
+import sympy as sp
 from sympy import Rational, sqrt, symbols
 
 from canon import Event, Hamiltonian, Lagrangian, VectorField, coordinates, propagate
-from canon.flow import NonFiniteStateError
+from canon.flow import AccuracyWarning, NonFiniteStateError
 
 u, v = symbols("u v", real=True)
+U = symbols("U", real=True)
 DRAINING = VectorField([-sqrt(u)], [u])
 
 
@@ -69,3 +71,20 @@ def test_a_root_of_a_velocity_beside_the_work_that_is_followed():
     with pytest.raises(NonFiniteStateError, match="after t = 2 where") as lost:
         propagate(Lagrangian(x.dot**2 / 2, [x], forces=[-sqrt(x.dot)]), (0, 5), [0.0, 1.0])
     assert lost.value.state == pytest.approx([2 / 3, 0], abs=1e-10)
+
+
+@pytest.mark.parametrize(("potential", "where"), [(sp.acos(sp.cos(U)), 0), (sp.asin(sp.sin(U)), np.pi / 2)])
+def test_kinks_that_arcs_make_end_the_motion(potential, where):
+    x = coordinates("x")
+    wave = Hamiltonian(x.momentum**2 / 2 + potential.subs(U, x), [x], [x.momentum])
+    with pytest.raises(NonFiniteStateError) as lost:
+        propagate(wave, (0, 20), [0.5, 2.1])
+    assert lost.value.state[0] == pytest.approx(where, abs=1e-6)
+
+
+def test_what_series_do_not_show_is_told_by_the_energy():
+    """Beside x = 0.1 a double does not tell √(x² + 1e-24) from x, whose series goes on as −|x| beyond 0."""
+    x = coordinates("x")
+    sharp = Hamiltonian(x.momentum**2 / 2 + sqrt(x**2 + Rational(1, 10**24)), [x], [x.momentum])
+    with pytest.warns(AccuracyWarning, match="the energy changes by"):
+        propagate(sharp, (0, 20), [0.5, 2.1])

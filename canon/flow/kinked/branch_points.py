@@ -7,6 +7,7 @@ t/2 − 1, and what it has become is −√u. A step of the Taylor method passes
 from __future__ import annotations
 
 import functools
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from canon.expression.graph.number_systems import FLOAT64
@@ -77,16 +78,26 @@ def check_branch_points(branches: Sequence[PreparedEvent], samples: Samples) -> 
 
 @functools.lru_cache(maxsize=64)
 def _open_roots(system: HamiltonEquations) -> tuple[int, ...]:
-    return tuple(node for node in system.graph.reachable(system.rates) if _is_open_root(system.graph, node))
+    """Return the roots of what may have any sign, those that the equations divide by included.
+
+    acos(cos x) has the slope sin x/√(1 − cos² x): its series goes on beyond x = π as if the root had changed its sign.
+    """
+    graph = system.graph
+    found = dict[int, None]()
+    for node in graph.reachable(system.rates):
+        if _is_open_root(graph, node):
+            base, exponent = (graph.nodes[node].operands[0], graph.nodes[graph.nodes[node].operands[1]].value)
+            found[node if exponent > 0 else graph.power(base, Fraction(1, exponent.denominator))] = None
+    return tuple(found)
 
 
 def _is_open_root(graph: Graph, node: int) -> bool:
-    """Tell whether a node is a root, of even index, of what may have any sign."""
+    """Tell whether a node is a root, of even index, of what may have any sign, or one over such a root."""
     kind, operands, _ = graph.nodes[node]
     if kind != "pow":
         return False
     exponent = graph.nodes[operands[1]]
-    if exponent.kind != "number" or exponent.value <= 0 or exponent.value.denominator % 2:
+    if exponent.kind != "number" or exponent.value.denominator % 2:
         return False
     return not graph.is_constant(operands[0]) and not is_nonnegative(graph, operands[0])
 

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from canon.kernel.program.repeated.repeated_terms import KeptFunction, RepeatedTerms
 
 __all__ = [
+    "IMPLAUSIBLE",
     "AccuracyWarning",
     "energy_rounding",
     "frames_of_canon",
@@ -39,7 +40,7 @@ __all__ = [
     "warn_of_jumps",
 ]  # fmt: skip
 
-_IMPLAUSIBLE = 0.5
+IMPLAUSIBLE = 0.5
 """An energy that changes by more than this part of the size of H's terms at the start is no small error."""
 
 _VANISHING = 1e-6
@@ -136,7 +137,9 @@ class AccuracyWarning(UserWarning):
     """Warning that a computed motion is certainly not that of the system."""
 
 
-def warn_of_jumps(system: HamiltonEquations, samples: Samples, start: Array, change: Array) -> None:
+def warn_of_jumps(
+    system: HamiltonEquations, samples: Samples, start: Array, change: Array, at_once: float = IMPLAUSIBLE
+) -> None:
     """Warn where the energy of an autonomous system changed as by a step over a singularity.
 
     Steps of one size may pass a collision from one side to the other without ever meeting an infinity. The
@@ -151,15 +154,21 @@ def warn_of_jumps(system: HamiltonEquations, samples: Samples, start: Array, cha
         The motion.
     start, change
         H at the start, shape (orbits,), or 0 where it is not at hand; and how much it changes, shape (times, orbits).
+    at_once
+        Which part of the size of H's terms is no small error either where it comes from one sample to the next: less
+        of methods that choose their steps. √(x² + 10⁻²⁴) has the series of x, which goes on beyond x = 0.
 
     Warns
     -----
     AccuracyWarning
         With the interval of time in which that was first seen.
     """
-    if (np.abs(change) <= _IMPLAUSIBLE * np.abs(start)).all():  # its terms together are no smaller
+    if (np.abs(change) <= at_once / 2 * np.abs(start)).all():  # its terms together are no smaller
         return
     wrong = jumped(system, samples, change)
+    if at_once < IMPLAUSIBLE:
+        size = size_of_terms(system, samples)
+        wrong |= (np.abs(np.diff(change, axis=0, prepend=0.0)) > at_once * size) & (size > 0)
     if not wrong.any():
         return
     first, orbit = (int(k[0]) for k in np.nonzero(wrong))
@@ -185,7 +194,7 @@ def jumped(system: HamiltonEquations, samples: Samples, change: Array) -> npt.ND
     """Return where the energy has changed by half the size of H's terms at the start, shape (times, orbits)."""
     size = size_of_terms(system, samples)
     # Where H and its terms are 0 there is nothing to compare with.
-    return (np.abs(change) > _IMPLAUSIBLE * size) & (size > 0)
+    return (np.abs(change) > IMPLAUSIBLE * size) & (size > 0)
 
 
 def size_of_terms(system: HamiltonEquations, samples: Samples) -> Array:
