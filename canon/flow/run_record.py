@@ -43,7 +43,7 @@ __all__ = ["Energies", "Measured", "RunRecord", "recorded"]
 
 
 _MISSED, _TOLERANCES = 1e-4, 1e4
-"""A method that chooses its steps has missed something where it loses such a part of the energy, or so many tolerances."""
+"""Where a method that chooses its steps loses such a part of the energy, or so many tolerances, it missed something."""
 
 _ROUNDING = 2.0**-44
 """A starting energy below this part of the size of H's terms is what rounding the start has left of zero."""
