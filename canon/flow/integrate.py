@@ -130,6 +130,7 @@ def _in_fixed_steps(
 def _by_heyoka(
     task: Task, method: Taylor, progress: Callable[[float], None], so_far: Samples | None
 ) -> Samples:
+    from canon.flow.adaptive.state_unit import parameter_units
     from canon.flow.adaptive.taylor_motion import taylor_motion
     from canon.flow.kinked.branch_points import branch_points, check_branch_points
     from canon.flow.kinked.lost_direction import check_directions, lost_directions
@@ -139,10 +140,14 @@ def _by_heyoka(
     start, begin = states[0][:, 0], _begin(task, so_far)
     branches = branch_points(system, start, begin) if kinks_of(system) is None else ()
     lost = lost_directions(system, start, begin)
+    looked = *events, *branches, *lost
+    units = parameter_units(system, task.states[0], looked)
+    high, low = map(units.of, states)
     made = taylor_motion(
-        system, states, task.plan, method, precision, progress, so_far, (*events, *branches, *lost), dense=dense,
+        units.system, (high, low), task.plan, method, precision, progress, so_far, units.events(looked), dense=dense,
         max_step=task.max_step,
     )  # fmt: skip
+    made = replace(made, y=units.back(made.y), carried=units.back(made.carried))
     made = check_directions(lost, made)
     return joined(so_far, check_branch_points(branches, made))
 
