@@ -67,7 +67,7 @@ def system_task(request: Request) -> tuple[Task, MovingSystem]:
     states = _exact(state_in_order(y0, found.state))
     orbits = _orbits(states, varying, np.shape(y0))
     single = states[0].ndim == 1 and not varying
-    start: dict[Symbol, Any] = {found.t: float(ends[0]), SPAN: abs(float(ends[1] - ends[0])) or 1.0}
+    start: dict[Symbol, Any] = {found.t: float(ends[0]), SPAN: float(ends[1] - ends[0]) or 1.0}
     start |= {by_name[str(key)]: float(exact_number(value, str(key))) for key, value in fixed.items()}
     start |= {by_name[name]: values.astype(np.float64) for name, values in varying.items()}
     start |= dict(zip(found.state, states[0].reshape(len(found.state), -1), strict=True))
@@ -204,7 +204,7 @@ def _work_unit(motion: FirstOrderMotion, start: Mapping[Symbol, float]) -> Fract
     terms = operands if kind == "add" else (motion.energy,)
     found = graph.evaluate([*terms, motion.power, motion.growth_of_power], start)
     *parts, power, rising = (abs(float(x)) for x in found)
-    size = sum(parts) or power * start[SPAN] or rising * start[SPAN] ** 2
+    size = sum(parts) or power * abs(start[SPAN]) or rising * start[SPAN] ** 2
     return Fraction(2) ** math.frexp(size)[1] if 0 < size < math.inf else Fraction(1)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from canon.flow.adaptive.longest_step import longest_step
 from canon.flow.adaptive.watched_orbit import WatchedOrbit
 from canon.flow.kinked.regimes import kinks_of
+from canon.flow.run.event import waiting_events
 from canon.flow.run.samples import Samples
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from canon.array import Array
     from canon.flow.kinked.regimes import Kinks
     from canon.flow.method.method import DOP853
-    from canon.flow.run.event import PreparedEvent
+    from canon.flow.run.event import Event, PreparedEvent
     from canon.flow.run.sampling_plan import Plan
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
@@ -51,12 +52,13 @@ def dop853_motion(
     """
     times = plan.instants[0 if so_far is None else len(so_far.t) - 1 :]
     orbits, done, kinks = states.shape[1], list[Samples](), kinks_of(system)
+    waiting = waiting_events(events, so_far)
     for y0 in states.T:
 
         def report(fraction: float, before: int = len(done)) -> None:
             progress((before + fraction) / orbits)
 
-        done.append(_orbit(system, kinks, events, y0, times, method, report, max_step or math.inf))
+        done.append(_orbit(system, kinks, events, y0, times, method, report, max_step or math.inf, waiting))
         if len(done[-1].t) < len(times) and orbits > 1:
             raise KeyboardInterrupt("an ensemble under DOP853 is done orbit by orbit: nothing of it is kept")
     return Samples(
@@ -81,6 +83,7 @@ def _orbit(
     method: DOP853,
     progress: Callable[[float], None],
     max_step: float,
+    waiting: Sequence[Event],
 ) -> Samples:
     """Integrate one orbit with SciPy's DOP853 on the compiled right-hand side, through its events and kinks."""
     terms, started = longest_step(system), time.thread_time()
@@ -95,6 +98,7 @@ def _orbit(
         lambda t, y: min(max_step, terms(t, y)),
         float(times[0]),
         y0.copy(),
+        waiting,
     )
     with contextlib.suppress(KeyboardInterrupt):  # what is kept comes back
         orbit.go(times, states, progress)

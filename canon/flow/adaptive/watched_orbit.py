@@ -22,7 +22,7 @@ from canon.flow.run.non_finite_state import NonFiniteStateError, PiledUpError, t
 from canon.kernel.llvm.number_types import DOUBLE, EXTENDED
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Collection, Sequence
 
     from canon.array import Array
     from canon.flow.kinked.regimes import Kinks
@@ -81,6 +81,8 @@ class WatchedOrbit:
         The longest step from a time and a state.
     t, y
         Where the motion is.
+    waiting
+        Of a motion that is resumed: the events that it has not met yet where it stands.
     """
 
     system: HamiltonEquations
@@ -91,6 +93,7 @@ class WatchedOrbit:
     longest: Callable[[float, Array], float]
     t: float
     y: Array
+    waiting: Collection[Event] = ()
     crossings: list[Crossing] = field(default_factory=list[Crossing])
     evaluations: int = 0
     steps: int = 0
@@ -102,7 +105,7 @@ class WatchedOrbit:
         self.signs: Signs = ()
         if self.kinks is not None:
             self.signs = signs_at_start(self.kinks, self._place(), self.forward)
-        self._sides = self._sides_now(rounding=0.0)  # as the other engines take a start
+        self._sides = self._sides_at_start()
         self._sizes = self._start = abs(self.y)
 
     @property
@@ -338,6 +341,16 @@ class WatchedOrbit:
         )
         if near and rate and not told and event.event.counts(rising):
             self._meet(event, rising=rising)
+
+    def _sides_at_start(self) -> Array:
+        """Return the signs of all functions, as the other engines take a start."""
+        watch, sides = self._watch(), self._sides_now(rounding=0.0)
+        values = self._place().values(watch.regime.system, [each.value for each in watch.events])
+        first = len(watch.kinks)
+        for k, (each, value) in enumerate(zip(watch.events, values, strict=True), first):
+            if value == 0 and each.event in self.waiting:
+                sides[k] = -sides[k]
+        return sides
 
     def _sides_now(self, crossed: Zero | None = None, rounding: float = _AT_ONCE) -> Array:
         """Return of which sign every function is from here on: of its rate where it vanishes; 0 where that does too."""

@@ -10,6 +10,7 @@ Q·q̇ + Σ λ (a·q̇) − ∂L/∂t, and a·q̇ = −a₀ on the constraints.
 from __future__ import annotations
 
 import functools
+import math
 from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -58,8 +59,8 @@ __all__ = [
 
 _PULL = sp.Dummy("alpha", positive=True)
 
-SPAN = sp.Dummy("span", positive=True)
-"""Under this symbol numbers of the start have the length of the span, which says how slow is slow."""
+SPAN = sp.Dummy("span", real=True)
+"""Under this symbol numbers of the start have the span, which says how slow is slow, and whether time runs back."""
 
 _IN_A_SPAN = 10.0
 """How many times in the span a deviation from the constraints falls by a factor e where the motion has no rates."""
@@ -234,14 +235,18 @@ def _bordered(
 def rate_of_pull(
     graph: Graph, state: Sequence[Symbol], rates: Sequence[int], start: Mapping[Symbol, float]
 ) -> float:
-    """Return α: the largest rate of the motion's linearisation at the start, or a slow one of the span."""
+    """Return α: the largest rate of the motion's linearisation at the start, or a slow one of the span.
+
+    It is negative where time runs back: what dies out forwards would grow.
+    """
     slopes = [graph.gradient(rate, state) for rate in rates]
     point = {**start, _PULL: 0.0}
     jacobian = np.array([[float(x) for x in graph.evaluate(row, point)] for row in slopes])
     fastest = float(np.abs(np.linalg.eigvals(jacobian)).max()) if np.isfinite(jacobian).all() else 0.0
     # Round-off of a double eigenvalue 0 is no rate.
     real = fastest if fastest > 1e-6 * np.sqrt(np.abs(jacobian).max(initial=0.0)) else 0.0
-    return max(real, _IN_A_SPAN / start.get(SPAN, _IN_A_SPAN))
+    span = start.get(SPAN, _IN_A_SPAN)
+    return math.copysign(max(real, _IN_A_SPAN / abs(span)), span)
 
 
 def _residuals(

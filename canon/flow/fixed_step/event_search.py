@@ -18,9 +18,9 @@ from canon.kernel.loops.event_loop import event_function
 from canon.kernel.loops.statistics_loop import wide_number
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Collection, Sequence
 
-    from canon.flow.run.event import PreparedEvent
+    from canon.flow.run.event import Event, PreparedEvent
     from canon.kernel.llvm.loop import Loop
     from canon.kernel.llvm.machine_code import MachineCode
     from canon.kernel.program.hamilton_equations import HamiltonEquations
@@ -115,10 +115,23 @@ class EventLocator:
             )
         return [(g, self.forward * rate) for g, rate in zip(numbers[::2], numbers[1::2], strict=True)]
 
-    def start(self, state: LoopState, t: Fraction) -> list[tuple[int, float, float]]:
-        """Note on which side of zero each g is and return that with dg/dt and g, for the compiled loop."""
+    def start(
+        self, state: LoopState, t: Fraction, waiting: Collection[Event] = ()
+    ) -> list[tuple[int, float, float]]:
+        """Note on which side of zero each g is and return that with dg/dt and g, for the compiled loop.
+
+        Parameters
+        ----------
+        state, t
+            Where the motion is.
+        waiting
+            Events that it has come to, where it goes on from there: those on their zero are yet to be met.
+        """
         looks = self.values_and_rates(state, t)
-        self.sides = [_sign(g) or _sign(rate) for g, rate in looks]
+        self.sides = [
+            _sign(g) or (-_sign(rate) if each.event in waiting else _sign(rate))
+            for each, (g, rate) in zip(self.events, looks, strict=True)
+        ]
         return self.known(looks)
 
     def known(self, looks: Sequence[tuple[float, float]]) -> list[tuple[int, float, float]]:

@@ -18,6 +18,7 @@ from canon.flow.fixed_step.compiled_loop import steps_between
 from canon.flow.fixed_step.partial_step import LoopState
 from canon.flow.fixed_step.statistics import check_cadence, statistics
 from canon.flow.fixed_step.steps_with_events import run_with_events
+from canon.flow.run.event import waiting_events
 from canon.flow.run.samples import Samples
 from canon.flow.run.sampling_plan import Plan, Sampling, fixed_plan, steps_over
 
@@ -97,7 +98,9 @@ def fixed_steps(
     met, end = (), Fraction(0)
     if events:
         start = LoopState(*states, memory)
-        found, met, end = run_with_events(system, steps, start, stops, events, progress)
+        found, met, end = run_with_events(
+            system, steps, start, stops, events, progress, waiting_events(events, so_far)
+        )
         runs = [found]
     else:
         runs = _on_threads(loop, states, steps.pairs, stops, progress, watch, memory, system.rows)

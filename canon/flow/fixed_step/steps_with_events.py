@@ -14,11 +14,11 @@ from canon.flow.fixed_step.loop_buffers import LoopBuffers
 from canon.flow.fixed_step.partial_step import LoopState, PartialSteps
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Collection, Sequence
 
     from canon.array import Array
     from canon.flow.fixed_step.loop_buffers import Memory
-    from canon.flow.run.event import Crossing, PreparedEvent
+    from canon.flow.run.event import Crossing, Event, PreparedEvent
     from canon.kernel.llvm.loop import Loop
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
@@ -35,6 +35,7 @@ def run_with_events(
     stops: Sequence[int],
     events: Sequence[PreparedEvent],
     progress: Callable[[float], None],
+    waiting: Collection[Event] = (),
 ) -> tuple[AdvancedStates, tuple[Crossing, ...], Fraction]:
     """Advance one orbit step by step, keep its states at the wanted step numbers and meet events.
 
@@ -52,6 +53,8 @@ def run_with_events(
         The events.
     progress
         Called now and then with the fraction done.
+    waiting
+        Of a motion that is resumed: the events that it has not met yet where it stands.
 
     Returns
     -------
@@ -72,7 +75,7 @@ def run_with_events(
     kept[0] = locator.forward
     done, before = np.array([stops[0]], dtype=np.int64), (np.empty_like(buffers.y), np.empty_like(buffers.e))
     states, beyond = [buffers.states()], [buffers.beyond()]
-    kept[1:] = np.ravel(locator.start(LoopState(*states[0]), steps.time(stops[0], Fraction(0))))
+    kept[1:] = np.ravel(locator.start(LoopState(*states[0]), steps.time(stops[0], Fraction(0)), waiting))
     started, reached = time.thread_time(), Fraction(stops[0])
     try:
         for stop in stops[1:]:

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from canon.flow.kinked.place import Place
     from canon.flow.kinked.regimes import Kinks, Regime
     from canon.flow.kinked.signs import Signs
+    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = ["Passage", "passage", "settled", "signs_at_start", "vanishing"]
 
@@ -314,15 +315,19 @@ def _refracted(kinks: Kinks, signs: Signs, beyond: Signs, k: int, jump: float, a
     normal = np.array(at.values(before.system, normal_nodes))
     if not normal.any():  # a switch in time
         return Passage(beyond)
-    inverse_mass = [at.values(after.system, graph.gradient(v, p)) for v in after.system.velocity]
-    a = float(normal @ np.array(inverse_mass) @ normal)
+
+    def across(system: HamiltonEquations) -> float:
+        """Return ∇g·M⁻¹∇g, which differs on the two sides where the masses do."""
+        inverse_mass = [at.values(system, graph.gradient(v, p)) for v in system.velocity]
+        return float(normal @ np.array(inverse_mass) @ normal)
+
     speed, own = (at.value(r.system, r.rate(wall)) for r in (after, before))
-    through = speed**2 - 2 * a * jump
+    through = speed**2 - 2 * across(after.system) * jump
     if through > 0:
-        along = (math.copysign(math.sqrt(through), speed) - speed) / a
+        along = (math.copysign(math.sqrt(through), own) - speed) / across(after.system)
         words, following = "is refracted", beyond
     else:
-        along, words, following = -2 * own / a, "is reflected", signs
+        along, words, following = -2 * own / across(before.system), "is reflected", signs
     n = len(q)
     y = at.y + at.carried
     y[n:] += along * normal
