@@ -234,7 +234,7 @@ class RunRecord:
     def relative(self) -> bool:
         """Whether the starting energy is not zero but for rounding (of no orbit), so that its error is relative."""
         start, least = self.energies.values[0], np.zeros(1)
-        if self.moving is None and np.all(start != 0):
+        if np.all(start != 0):
             least = _ROUNDING * size_of_terms(self.task.system, self.samples)
         return bool(np.all(np.abs(start) > least))
 

@@ -1,7 +1,10 @@
 """The compiled right-hand side: the rates that the derivation says, in other programs' hands."""
 
 import copy
+import itertools
 import pickle
+import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -61,3 +64,25 @@ def test_the_rates_of_many_motions_are_refused():
         right_hand_side(DRIVEN, [[1.0, 2.0], [0.0, 0.0]], VALUES)
     with pytest.raises(KeyError, match="g"):
         right_hand_side(DRIVEN, [1.0, 0.0], {m: 1.0})
+
+
+def test_several_threads_may_call_it_at_once():
+    x = coordinates("x1:11")
+    chain = Hamiltonian(
+        sum(a.momentum**2 / 2 for a in x) - sum(sp.cos(a) * sp.cos(b) for a, b in itertools.pairwise(x)),
+        x,
+        [a.momentum for a in x],
+    )
+    f = right_hand_side(chain, np.zeros(20))
+    states = np.random.default_rng(0).standard_normal((4, 20))
+    true = [f(0.0, y) for y in states]
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        with ThreadPoolExecutor(4) as pool:
+            wrong = list(
+                pool.map(lambda k: sum((f(0.0, states[k]) != true[k]).any() for _ in range(5000)), range(4))
+            )
+    finally:
+        sys.setswitchinterval(before)
+    assert wrong == [0] * 4

@@ -27,13 +27,13 @@ class CompiledNodes:
 
 
 def compiled_nodes(system: HamiltonEquations, nodes: Sequence[int]) -> CompiledNodes:
-    """Return nodes as a compiled function of t and y."""
-    code = field_function(system.program(nodes))
-    x, out = np.empty(len(system.inputs)), np.empty(len(nodes))
+    """Return nodes as a compiled function of t and y, which several threads may call at once."""
+    code, inputs, outputs = field_function(system.program(nodes)), len(system.inputs), len(nodes)
 
     def values(t: float, y: Array) -> Array:
+        x, out = np.empty(inputs), np.empty(outputs)
         x[:-1], x[-1] = y, t
         code.call(x.ctypes.data, out.ctypes.data)
-        return out.copy()
+        return out
 
     return CompiledNodes(values, code.seconds)
