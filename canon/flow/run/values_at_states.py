@@ -55,6 +55,13 @@ def size_of_energy(system: HamiltonEquations, states: Array, t: Array) -> Array:
 
 
 def energy_terms(system: HamiltonEquations) -> tuple[int, ...]:
-    """Return the nodes of the terms of H."""
-    node = system.graph.nodes[system.hamiltonian]
-    return node.operands if node.kind == "add" else (system.hamiltonian,)
+    """Return the nodes of the terms of H, where a sum with a factor before it is several too."""
+    graph = system.graph
+    node = graph.nodes[system.hamiltonian]
+    if node.kind == "add":
+        return node.operands
+    sums = [each for each in node.operands if graph.nodes[each].kind == "add"]
+    if node.kind != "mul" or len(sums) != 1:
+        return (system.hamiltonian,)
+    factors = [each for each in node.operands if each != sums[0]]
+    return tuple(graph.mul((*factors, term)) for term in graph.nodes[sums[0]].operands)

@@ -191,7 +191,7 @@ def judged_series(series: ErrorSeries, diverged: float = 1.0, false_alarm: float
         As :func:`drift` takes them.
     """
     times, values = _checked(series.t, series.error)
-    found = _drift(times, values, series.walk, series.resolution, diverged, false_alarm)
+    found = _drift(times, values, series.walk, series.resolution, diverged * series.size, false_alarm)
     return _of_motion(found, series) if series.way else found
 
 

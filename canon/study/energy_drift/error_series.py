@@ -54,6 +54,8 @@ class ErrorSeries:
         Method, step or tolerance, and precision, in words; empty where the motion itself is not at hand.
     relative
         Whether the error is relative to the quantity, or to its terms.
+    size
+        Where it is not: what errors are large beside, in their unit.
     """
 
     t: Array
@@ -65,6 +67,7 @@ class ErrorSeries:
     truncated: bool = False
     way: str = ""
     relative: bool = True
+    size: float = 1.0
 
 
 def series_of_parts(
@@ -147,7 +150,10 @@ def error_series(
     bias = u * motion.steps * max(least, float(np.mean(terms)))
     tolerance = motion.method.tolerance
     truncated = tolerance is not None and tolerance > FAR_ABOVE * u
-    return ErrorSeries(t, error, largest, walk or None, bias, u, truncated, _way(motion), relative)
+    size = 1.0 if relative else float(np.mean(terms)) or 1.0
+    return ErrorSeries(
+        t, error, largest, walk or None, bias, u * size, truncated, _way(motion), relative, size
+    )
 
 
 def _followed(motion: Trajectory, observable: str) -> tuple[Array, Array]:
