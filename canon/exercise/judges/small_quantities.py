@@ -6,6 +6,7 @@ small quantities, all of them are of one order. The two sides must be quotients 
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations_with_replacement
 from typing import TYPE_CHECKING, cast
 
@@ -26,8 +27,9 @@ from canon.exercise.question.question import (
 )
 from canon.exercise.question.series_expansion import check_analytic, coefficient, coefficients, without_kinks
 from canon.exercise.sheet.sympy_trees import shown
-from canon.expression.symbols.symbol import acceleration, velocity
+from canon.expression.symbols.symbol import Coordinate, acceleration, velocity
 from canon.expression.symbols.user_input import counted
+from canon.frozen_mapping import FrozenMapping
 from canon.mechanics.algebra.constraint_manifold import transported
 from canon.mechanics.algebra.substitution import exchanged, substitute, symbols_of
 from canon.mechanics.lagrange.lagrangian import Lagrangian
@@ -104,7 +106,10 @@ def _is_expanded(f: Expr, small: Sequence[Symbol]) -> bool:
 
 
 def linearisation(reading: Reading) -> Iterator[Question]:
-    """The place is an equilibrium, and the claimed equations are Lagrange's to first order in q, q̇, q̈ about it."""
+    """The place is an equilibrium, and the claimed equations are Lagrange's to first order in q, q̇, q̈ about it.
+
+    What is assumed of coordinates is said of places: a deviation from a place has either sign, so that √(r²) is no r.
+    """
     q = reading.symbols("q")
     table, names = reading.table("equilibrium"), {x.name: x for x in q}
     if set(table) != set(names):
@@ -133,17 +138,26 @@ def linearisation(reading: Reading) -> Iterator[Question]:
         )  # fmt: skip
         return
     yield at_rest
-    linear = tuple(_linear(e, q, rates, place, domain) for e in equations)
-    written = reading.equations("claim")
+    deviation = {x: Coordinate(x.name, real=True) for x in q}
+    linear = tuple(exchanged(_linear(e, q, rates, place, domain), deviation) for e in equations)
+    written = tuple(exchanged(e, deviation) for e in _of_deviations(reading).equations("claim"))
     unknowns = tuple(acceleration(x) for x in q)
     yield SameEquations(written, linear, unknowns, domain, lambda: tuple(map(shown_short, linear)), written)
     bends = tuple(
         Part(f"equation {i} beyond first order", e.diff(a, b))
         for i, e in enumerate(written, 1)
-        for a, b in combinations_with_replacement((*q, *rates), 2)
+        for a, b in combinations_with_replacement((*deviation.values(), *rates), 2)
     )
     yield Same(bends, domain, None, lambda part: f"{part.name}: a claimed equation is not linear")
     yield more_than_zero(written, domain)
+
+
+def _of_deviations(reading: Reading) -> Reading:
+    """Return the claim with nothing assumed of its coordinates."""
+    said = reading.claim.keys.get("parameters", {})
+    free = FrozenMapping({name: word for name, word in said.items() if name not in reading.words("q")})
+    keys = FrozenMapping({**reading.claim.keys, **({"parameters": free} if said else {})})
+    return replace(reading, claim=replace(reading.claim, keys=keys))
 
 
 def _check_real(place: Mapping[Symbol, Expr], domain: Domain) -> None:

@@ -1,0 +1,131 @@
+"""Claims by which a reader of the code had wrong verdicts, with right neighbours: what is no proof decides nothing."""
+
+import pytest
+
+from canon.exercise.claim_verdict import InvalidClaim, judge
+from canon.exercise.sheet.sheet import Claim
+
+
+def said(kind, **keys):
+    """Return the verdict on a claim as a word; invalid where nothing can be judged."""
+    try:
+        return judge(Claim("a", kind, keys)).status.value
+    except InvalidClaim:
+        return "invalid"
+
+
+SPRING = {
+    "q": ["r"], "parameters": {"r": "positive", "w": "positive", "a": "positive"},
+    "L": "r_dot**2/2 - w**2*(r - a)**2/2", "equilibrium": {"r": "a"},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("claim", "due"),
+    [
+        ("r'' + w**2*sqrt(r**2) = 0", "fails"),
+        ("r'' + w**2*Abs(r) = 0", "fails"),
+        ("r'' + w**2*r = 0", "holds"),
+        ("r'' - w**2*r = 0", "fails"),
+    ],
+)
+def test_a_deviation_has_either_sign_whatever_is_assumed_of_the_coordinate(claim, due):
+    assert said("linearisation", **SPRING, claim=[claim]) == due
+
+
+@pytest.mark.parametrize(
+    ("word", "value", "domain", "claim", "due"),
+    [
+        ("positive", "-9.81", [], "-9.81", "invalid"),
+        ("positive", "9.81", [], "9.81", "holds"),
+        ("positive", "9.81", [], "-9.81", "fails"),
+        ("real", "-9.81", [], "9.81", "holds"),
+        ("real", "-9.81", [], "-9.81", "fails"),
+        ("negative", "-9.81", [], "9.81", "holds"),
+        ("nonzero", "0", [], "0", "invalid"),
+        ("integer", "1/2", [], "1/2", "invalid"),
+        ("real", "9.81", ["g < 0"], "9.81", "invalid"),
+        ("real", "-9.81", ["g < 0"], "9.81", "holds"),
+        ("real", "sqrt(2)", ["g**2 <= 2"], "sqrt(2)", "holds"),
+        ("real", "sqrt(2)", ["g**2 < 2"], "sqrt(2)", "invalid"),
+    ],
+)
+def test_given_numbers_are_what_is_assumed_of_their_names(word, value, domain, claim, due):
+    keys = {"parameters": {"g": word}, "given": {"g": value}, "domain": domain}
+    assert said("number", **keys, value="sqrt(g**2)", tolerance="0.001", claim=claim) == due
+
+
+@pytest.mark.parametrize(
+    ("n", "value", "due"),
+    [
+        ("k/2", "k", "undecided"),
+        ("k", "2*k", "holds"),
+        ("k*(k + 1)/2", "k**2 + k", "holds"),
+        ("k + 1/2", "2*k + 1", "fails"),
+        ("2", "4", "holds"),
+        ("sqrt(2)", "2*sqrt(2)", "fails"),
+    ],
+)
+def test_values_of_whole_parameters_are_proved_to_be_whole(n, value, due):
+    keys = {"q": ["q"], "p": ["p"], "parameters": {"n": "integer", "k": "integer"}, "find": ["n"]}
+    pairs = [{"f": "q", "g": "2*n*p", "value": value}]
+    assert said("parameters", of="poisson-bracket", **keys, pairs=pairs, values=[{"n": n}]) == due
+
+
+@pytest.mark.parametrize(
+    ("constraint", "domain", "due"),
+    [
+        ("x - a*sign(t) = 0", [], "rheonomic"),
+        ("x - a*sign(t) = 0", ["t > 0"], "scleronomic"),
+        ("x - sqrt(t**2)/t = 0", [], "rheonomic"),
+        ("x - y*(3 + sign(t - 3)) = 0", [], "rheonomic"),
+        ("x - y*Piecewise((1, t > 3), (2, True)) = 0", [], "rheonomic"),
+        ("x - y*Piecewise((1, y > 3), (2, True)) = 0", [], "scleronomic"),
+        ("x_dot - y_dot - atan(t) - atan(1/t) = 0", [], "rheonomic"),
+        ("x - sign(t) >= 0", [], "rheonomic"),
+        ("x - sign(t)**2 = 0", [], "scleronomic"),
+        ("(x - y)*exp(t) = 0", [], "scleronomic"),
+        ("x - a*t = 0", [], "rheonomic"),
+        ("x_dot - a = 0", [], "scleronomic"),
+        ("x**2 + y**2 - a**2 = 0", [], "scleronomic"),
+    ],
+)
+def test_the_time_stands_in_constraints_by_steps_too(constraint, domain, due):
+    keys = {"q": ["x", "y"], "parameters": {"a": "positive"}, "domain": domain, "constraints": [constraint]}
+    other = {"rheonomic": "scleronomic", "scleronomic": "rheonomic"}[due]
+    assert said("constraint-class", **keys, **{"class": [due]}) == "holds"
+    assert said("constraint-class", **keys, **{"class": [other]}) == "fails"
+
+
+@pytest.mark.parametrize("constraint", ["(1 + sign(t))*(x - y) = 0", "(1 + sign(t))*(x_dot - y_dot) = 0"])
+def test_constraints_that_hold_at_some_times_only_are_not_called_scleronomic(constraint):
+    keys = {"q": ["x", "y"], "constraints": [constraint]}
+    assert said("constraint-class", **keys, **{"class": ["scleronomic"]}) != "holds"
+
+
+def test_relations_inside_brackets_part_no_constraint():
+    keys = {"q": ["x", "y"], "class": ["unilateral"]}
+    steps = "y*Piecewise((1, y > 3), (2, True))"
+    assert said("constraint-class", **keys, constraints=[f"x >= {steps}"]) == "holds"
+    assert said("constraint-class", **keys, constraints=[f"x = {steps}"]) == "fails"
+
+
+@pytest.mark.parametrize(
+    ("leaves", "due"),
+    [
+        ("(9*cos(theta)**2 - 12*cos(theta) + 4)/(3*cos(theta) - 2) = 0", "fails"),
+        ("(3*cos(theta) - 2)**2/(3*cos(theta) - 2)", "fails"),
+        ("(3*cos(theta) - 2)/(cos(theta) + 2) = 0", "holds"),
+        ("(3*cos(theta) - 2)/cos(theta) = 0", "holds"),
+        ("3 = 2/cos(theta)", "holds"),
+        ("3 = 1/cos(theta)", "fails"),
+        ("theta = acos(2/3)", "holds"),
+    ],
+)
+def test_a_leaving_condition_has_a_value_where_the_contact_is_lost(leaves, due):
+    keys = {
+        "q": ["r", "theta"], "parameters": {"m": "positive", "g": "positive", "a": "positive"},
+        "L": "m*(r_dot**2 + r**2*theta_dot**2)/2 - m*g*r*cos(theta)", "contact": "r - a",
+        "integrals": ["m*a**2*theta_dot**2/2 + m*g*a*cos(theta) = m*g*a"],
+    }  # fmt: skip
+    assert said("leaving-condition", **keys, leaves=leaves) == due
