@@ -129,3 +129,66 @@ def test_a_leaving_condition_has_a_value_where_the_contact_is_lost(leaves, due):
         "integrals": ["m*a**2*theta_dot**2/2 + m*g*a*cos(theta) = m*g*a"],
     }  # fmt: skip
     assert said("leaving-condition", **keys, leaves=leaves) == due
+
+
+RESONANT = "eps*I1*I2*cos(u - v)"
+
+
+@pytest.mark.parametrize(
+    ("domain", "K", "due"),
+    [
+        (["w1 = w2"], "", "fails"),
+        (["w1 = w2"], RESONANT, "holds"),
+        (["w1 >= w2", "w1 <= w2"], "", "fails"),
+        (["w1 >= w2", "w1 <= w2"], RESONANT, "holds"),
+        (["(w1 - w2)*(w1 - 2*w2) = 0"], "", "undecided"),
+        (["(w1 - w2)**2*(w1 - 2*w2)**2 <= 0"], "", "undecided"),
+        (["w1 = 2*w2"], "", "holds"),
+        (["w1 = 2*w2"], RESONANT, "fails"),
+        (["w1 > w2"], "", "holds"),
+        (["w1 >= w2"], "", "holds"),
+        (["w1**2 + w2**2 < 7"], "", "holds"),
+        ([], "", "holds"),
+        ([], RESONANT, "fails"),
+    ],
+)
+def test_the_domain_decides_which_terms_of_an_average_are_resonant(domain, K, due):
+    keys = {
+        "q": ["u", "v"], "p": ["I1", "I2"], "angles": ["u", "v"], "small": ["eps"], "domain": domain,
+        "parameters": {"w1": "positive", "w2": "positive", "eps": "real"},
+        "H": f"w1*I1 + w2*I2 + {RESONANT}", "K": f"w1*I1 + w2*I2 + {K or 0}",
+    }  # fmt: skip
+    assert said("averaged-hamiltonian", **keys) == due
+
+
+@pytest.mark.parametrize(
+    ("frequencies", "domain", "wave", "due"),
+    [
+        (("sqrt(k1/m1)", "sqrt(k2/m2)"), ["k1*m2 = k2*m1"], "2*u - 2*v", "fails"),
+        (("sqrt(k1/m1)", "sqrt(k2/m2)"), ["k1*m2 = k2*m1"], "u", "holds"),
+        (("sqrt(k1/m1)", "sqrt(k2/m2)"), ["k1*m2 = 4*k2*m1"], "u - 2*v", "fails"),
+        (("sqrt(k1/m1)", "sqrt(k2/m2)"), [], "u - v", "holds"),
+        (("sqrt(k1**2 - a)", "m1"), [], "u", "holds"),
+        (("a", "1"), ["a = 0"], "u", "fails"),
+        (("a", "1"), ["a > 0"], "u", "holds"),
+        (("a + Abs(a)", "1"), [], "u", "undecided"),
+    ],
+)
+def test_frequencies_are_divided_by_where_they_are_not_zero(frequencies, domain, wave, due):
+    keys = {
+        "q": ["u", "v"], "p": ["I1", "I2"], "angles": ["u", "v"], "small": ["eps"], "domain": domain,
+        "parameters": {**dict.fromkeys(("k1", "k2", "m1", "m2"), "positive"), "eps": "real", "a": "real"},
+    }  # fmt: skip
+    K = "({})*I1 + ({})*I2".format(*frequencies)
+    assert said("averaged-hamiltonian", **keys, H=f"{K} + eps*I1*I2*cos({wave})", K=K) == due
+
+
+@pytest.mark.parametrize(
+    ("domain", "due"), [(["w = 1"], "undecided"), (["w >= 1", "w <= 1"], "undecided"), ([], "holds")]
+)
+def test_bounds_that_leave_one_value_tie_parameters_of_normal_forms(domain, due):
+    keys = {
+        "q": ["x", "y"], "p": ["px", "py"], "parameters": {"w": "positive"}, "domain": domain, "degree": 4,
+        "H": "(px**2 + x**2)/2 + w*(py**2 + y**2)/2 + x**2*y**2", "actions": ["J1", "J2"], "K": "J1 + w*J2 + J1*J2",
+    }  # fmt: skip
+    assert said("normal-form", **keys) == due
