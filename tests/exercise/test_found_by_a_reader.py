@@ -192,3 +192,47 @@ def test_bounds_that_leave_one_value_tie_parameters_of_normal_forms(domain, due)
         "H": "(px**2 + x**2)/2 + w*(py**2 + y**2)/2 + x**2*y**2", "actions": ["J1", "J2"], "K": "J1 + w*J2 + J1*J2",
     }  # fmt: skip
     assert said("normal-form", **keys) == due
+
+
+SCALED = {"of": "poisson-bracket", "pairs": [{"f": "q", "g": "p*V(a*q)", "value": "V(q)"}]}
+SHIFTED = {"of": "constant-of-motion", "H": "p**2/2 + V(q)", "I": "p**2/2 + V(q + a)"}
+SHIFTED_AND_SCALED = {"of": "constant-of-motion", "H": "p**2/2 + V(q)", "I": "c*p**2/2 + V(q + a)"}
+NEW_HAMILTONIAN = {
+    "of": "transformed-hamiltonian-K", "new_q": ["Q"], "new_p": ["P"], "H": "p**2/2 + V(q)",
+    "map": {"Q": ["q"], "P": ["p"]}, "K": "P**2/2 + V(a*Q)",
+}  # fmt: skip
+REWRITTEN = {
+    "of": "poisson-bracket",
+    "pairs": [{"f": "q", "g": "p*V((q + 1)**2)", "value": "a*V(q**2 + 2*q + 1)"}],
+}
+ANOTHER_FACTOR = {"of": "poisson-bracket", "pairs": [{"f": "q", "g": "2*p*V(a*q)", "value": "V(q)"}]}
+WITH_A_GIVEN = {"of": "poisson-bracket", "pairs": [{"f": "q", "g": "p*V(a*q)", "value": "V(b*q)"}]}
+
+
+@pytest.mark.parametrize(
+    ("claim", "right", "wrong"),
+    [
+        (SCALED, [{"a": "1"}], [[], [{"a": "2"}], [{"a": "1"}, {"a": "-1"}]]),
+        (SHIFTED, [{"a": "0"}], [[], [{"a": "1"}]]),
+        (SHIFTED_AND_SCALED, [{"a": "0", "c": "1"}], [[], [{"a": "0"}], [{"c": "1"}]]),
+        (NEW_HAMILTONIAN, [{"a": "1"}], [[], [{"a": "-1"}]]),
+        (REWRITTEN, [{"a": "1"}], [[], [{"a": "0"}]]),
+        (ANOTHER_FACTOR, [], [[{"a": "1"}], [{"a": "0"}]]),
+        (WITH_A_GIVEN, [{"a": "b"}], [[], [{"a": "1"}]]),
+    ],
+)
+def test_values_of_a_function_are_one_where_its_places_are(claim, right, wrong):
+    of_c = "c" in claim.get("I", "")
+    keys = {
+        "q": ["q"], "p": ["p"], "parameters": dict.fromkeys("abc", "real"), "functions": {"V": ["q"]},
+        "find": ["a", "c"] if of_c else ["a"],
+    }  # fmt: skip
+    assert said("parameters", **keys, **claim, values=right) == "holds"
+    for values in wrong:
+        assert said("parameters", **keys, **claim, values=values) == "fails"
+
+
+def test_places_that_are_one_in_a_part_of_the_domain_leave_it_open():
+    keys = {"q": ["q"], "p": ["p"], "parameters": {"a": "real"}, "functions": {"V": ["q"]}, "find": ["a"]}
+    pairs = [{"f": "q", "g": "p*V(Abs(q))", "value": "a*V(q)"}]
+    assert said("parameters", of="poisson-bracket", **keys, pairs=pairs, values=[]) != "holds"
