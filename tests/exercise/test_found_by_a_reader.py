@@ -236,3 +236,29 @@ def test_places_that_are_one_in_a_part_of_the_domain_leave_it_open():
     keys = {"q": ["q"], "p": ["p"], "parameters": {"a": "real"}, "functions": {"V": ["q"]}, "find": ["a"]}
     pairs = [{"f": "q", "g": "p*V(Abs(q))", "value": "a*V(q)"}]
     assert said("parameters", of="poisson-bracket", **keys, pairs=pairs, values=[]) != "holds"
+
+
+@pytest.mark.parametrize(
+    ("small", "domain", "exact", "claim", "due"),
+    [
+        (["eps"], ["b = eps*a"], "1 + b", "1 + eps*a", "holds"),
+        (["eps"], ["b = eps*a"], "1 + b", "1 - eps*a", "fails"),
+        (["eps"], ["b = eps*a"], "1 + b", "1", "fails"),
+        (["eps"], ["b = eps*a"], "cos(b)", "1 - b**2/2 + b*eps - a*eps**2", "holds"),
+        (["eps"], ["b = eps*a", "c = 1 + b"], "c**2", "1 + 2*eps*a", "holds"),
+        (["eps"], ["eps = m/M"], "1/(M + m)", "1/M - eps/M", "holds"),
+        (["eps"], ["eps = m/M"], "1/(M + m)", "1/M + eps/M", "fails"),
+        (["eps"], ["b**2 = eps"], "1 + b", "1", "undecided"),
+        (["x", "y"], ["y = 2*x"], "sin(y)", "2*x", "holds"),
+        (["x", "y"], ["y = 2*x"], "sin(y)", "x", "fails"),
+        (["x", "y"], ["y = x**2"], "sin(y)", "0", "undecided"),
+        (["x", "y"], [], "sin(y)", "2*x", "fails"),
+        (["eps"], ["eps*a > 0", "eps > 0"], "eps*sqrt(a**2)", "eps*a", "undecided"),
+        (["eps"], ["eps > 0"], "eps*sqrt(a**2)", "eps*a", "fails"),
+        (["eps"], ["a > eps"], "eps*sqrt(a**2)", "eps*a", "holds"),
+    ],
+)
+def test_what_the_domain_says_of_small_quantities_is_put_in(small, domain, exact, claim, due):
+    said_of = {**dict.fromkeys(("eps", "a", "b", "c", "x", "y"), "real"), "m": "positive", "M": "positive"}
+    keys = {"parameters": said_of, "small": small, "domain": domain, "exact": [exact], "claim": [claim]}
+    assert said("first-order", **keys) == due
