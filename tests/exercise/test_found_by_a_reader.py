@@ -262,3 +262,51 @@ def test_what_the_domain_says_of_small_quantities_is_put_in(small, domain, exact
     said_of = {**dict.fromkeys(("eps", "a", "b", "c", "x", "y"), "real"), "m": "positive", "M": "positive"}
     keys = {"parameters": said_of, "small": small, "domain": domain, "exact": [exact], "claim": [claim]}
     assert said("first-order", **keys) == due
+
+
+@pytest.mark.parametrize("offset", ["1", "10", "1000", "5000"])
+def test_momenta_are_claimed_where_they_are_real_however_far_away(offset):
+    keys = {"q": ["q"], "p": ["p"], "H": f"p**2/2 + q**2/2 + {offset}", "constants": ["E"]}
+    assert said("hamilton-jacobi", **keys, gradient=[f"sqrt(2*(E - {offset}) - q**2)"]) == "holds"
+    assert said("hamilton-jacobi", **keys, gradient=[f"sqrt(2*(E + {offset}) - q**2)"]) == "fails"
+    assert said("hamilton-jacobi", **keys, gradient=[f"sqrt(2*(E - {offset}) - 2*q**2)"]) == "fails"
+
+
+def test_momenta_are_claimed_where_they_are_real_beside_large_parameters():
+    keys = {
+        "q": ["q"], "p": ["p"], "H": "p**2/2 + q**2/2 + V0", "constants": ["E"], "domain": ["V0 > 1000"],
+        "parameters": {"V0": "positive", "E": "real"},
+    }  # fmt: skip
+    assert said("hamilton-jacobi", **keys, gradient=["sqrt(2*E - 2*V0 - q**2)"]) == "holds"
+    assert said("hamilton-jacobi", **keys, gradient=["sqrt(2*E + 2*V0 - q**2)"]) == "fails"
+
+
+@pytest.mark.parametrize(
+    ("equation", "motion", "due"),
+    [
+        ("4*x**3*x'' + 1 = 0", "sqrt(t - 1000)", "holds"),
+        ("4*x**3*x'' - 1 = 0", "sqrt(t - 1000)", "fails"),
+        ("4*x**3*x'' + 1 = 0", "sqrt(t - 1)", "holds"),
+        ("4*x**3*x'' + 1 = 0", "I*sqrt(1000 - t)", "fails"),
+        ("x'' + exp(-2*x) = 0", "log(t - 500)", "holds"),
+        ("x'' - exp(-2*x) = 0", "log(t - 500)", "fails"),
+        ("9*x**2*x'' + 2 = 0", "(t - 500)**(2/3)", "holds"),
+        ("9*x**2*x'' + 2 = 0", "(t - 5)**(2/3)", "holds"),
+        ("x'*x - t = 0", "sqrt(t**2 + 1)", "holds"),
+        ("x'*x - t = 0", "sqrt(t**2 - 4000000)", "holds"),
+        ("x'*x + t = 0", "sqrt(-1 - t**2)", "fails"),
+        ("x'' = 0", "t + sqrt(-1 - a**2)", "fails"),
+        ("x'' = 0", "t*log(-1 - a**2)", "fails"),
+    ],
+)
+def test_a_motion_is_claimed_where_it_is_real_and_fails_where_it_is_real_nowhere(equation, motion, due):
+    keys = {"q": ["x"], "parameters": {"a": "real"}, "equations": [equation], "solution": {"x": motion}}
+    assert said("solution", **keys) == due
+
+
+@pytest.mark.parametrize(("radicand", "due"), [("J - 1000", "holds"), ("-1 - J**2", "fails")])
+def test_a_map_to_actions_is_claimed_where_it_is_real(radicand, due):
+    keys = {"q": ["q"], "p": ["p"], "H": "(p**2 + q**2)/2", "new_q": ["theta"], "new_p": ["J"]}
+    root = f"sqrt(2*({radicand}))"
+    table = {"q": f"{root}*sin(theta)", "p": f"{root}*cos(theta)"}
+    assert said("action-angle", **keys, transformation=table, budget=30) == due
