@@ -38,7 +38,7 @@ def real_bounds(functions: Iterable[Expr], domain: Domain) -> list[Boolean]:
     --------
     >>> t = sp.Symbol("t", real=True)
     >>> real_bounds([sp.sqrt(t - 5) + sp.asin(t / 6)], Domain())
-    [1 - t**2/36 > 0, t - 5 > 0]
+    [t - 5 > 0, 1 - t**2/36 > 0]
     """
     kinds = (sp.Pow, sp.log, sp.acosh, *_INSIDE_ONE, *_BEYOND_ONE)
     parts = sorted({part for f in functions for part in f.atoms(*kinds)}, key=sp.default_sort_key)

@@ -64,7 +64,8 @@ def action_angle(reading: Reading) -> Iterator[Question]:
                 return
         right = tori.along_the_motion(of_state, [*map(tori.of_state, tori.known())], tori.tori[0].J, domain)
         parts = _components("the action", "J", H.q, claimed, right, at_energy)
-        yield Same(parts, domain, tori.shown, _whole_loop)
+        yield Same(parts, tori.where_valid(domain), tori.shown, _whole_loop)
+        yield tori.of_one_kind(domain)
 
 
 def _components(
@@ -119,9 +120,11 @@ def _map_to_actions(reading: Reading, H: Hamiltonian) -> Iterator[Question]:
     yield from _is_one_map(dict(zip(written, images, strict=True)), new_q, (*q, *p), whole)
     said = "the new momenta are not the actions (1/2π) ∮ p dq: the angles do not grow by 2π in a turn"
     for there, tori in by_senses(H, reading):
-        domain = transported(there, seen) if seen else there
+        valid = tori.where_valid(there)
+        domain = transported(valid, seen) if seen else valid
         right = [substitute(tori.of_state(J), seen) for J in tori.known()]
         yield Same(_up_to_units(H.q, momenta, right, (*q, *p), domain), domain, tori.shown, lambda _: said)
+        yield tori.of_one_kind(there)
 
 
 def _is_one_map(
@@ -214,7 +217,8 @@ def frequency(reading: Reading) -> Iterator[Question]:
         )
         answer = tuple(substitute(f, {energy: Symbol("E", real=True)}) for f in omega)
         parts = _components("the frequency", "omega", H.q, claimed, right, through)
-        yield Same(parts, domain, lambda answer=answer: answer, _turns_alone)
+        yield Same(parts, tori.where_valid(domain), lambda answer=answer: answer, _turns_alone)
+        yield tori.of_one_kind(domain)
 
 
 def slow_invariant(reading: Reading, I: Expr, tau: Symbol, H: Expr, H0: Expr) -> Iterator[Question]:
@@ -242,7 +246,8 @@ def slow_invariant(reading: Reading, I: Expr, tau: Symbol, H: Expr, H0: Expr) ->
             Part(f"∂(I, J)/∂({a}, {b})", I.diff(a) * J.diff(b) - I.diff(b) * J.diff(a))
             for a, b in combinations((x, y, tau), 2)
         )
-        yield Same(parts, domain, lambda J=J: J, lambda _: said)
+        yield Same(parts, tori.where_valid(domain), lambda J=J: J, lambda _: said)
+        yield tori.of_one_kind(domain)
 
 
 def _hamiltonian(reading: Reading) -> Hamiltonian:
