@@ -310,3 +310,67 @@ def test_a_map_to_actions_is_claimed_where_it_is_real(radicand, due):
     root = f"sqrt(2*({radicand}))"
     table = {"q": f"{root}*sin(theta)", "p": f"{root}*cos(theta)"}
     assert said("action-angle", **keys, transformation=table, budget=30) == due
+
+
+MASSLESS = {
+    "q": ["x", "y", "z"], "parameters": {"m": "positive", "k": "positive"},
+    "L": "m*(x_dot**2 + y_dot**2)/2 - k*(x - z)**2/2", "multipliers": ["lam"],
+}  # fmt: skip
+REDUNDANT = {
+    "q": ["x", "y"], "parameters": {"m": "positive", "g": "positive", "a": "real"},
+    "L": "m*(x_dot**2 + y_dot**2)/2 - m*g*y", "constraints": ["x - a", "2*x - 2*a"], "multipliers": ["lam", "mu"],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("kind", "constraint", "claim", "due"),
+    [
+        ("multiplier-holonomic", "y", "z'' = 0", "holds"),
+        ("multiplier-holonomic", "y", "z = x", "holds"),
+        ("multiplier-holonomic", "y", "z' = x'", "holds"),
+        ("multiplier-holonomic", "y", "x'' = 0", "holds"),
+        ("multiplier-holonomic", "y", "x'' = z", "fails"),
+        ("multiplier-holonomic", "y", "z = 2*x", "fails"),
+        ("multiplier-holonomic", "y", "z' = 0", "fails"),
+        ("nonholonomic", "y_dot", "z' = x'", "holds"),
+        ("nonholonomic", "y_dot", "lam*z' = 0", "holds"),
+        ("nonholonomic", "y_dot", "z' = y' + 1", "fails"),
+    ],
+)
+def test_what_follows_from_rates_of_equations_holds_on_every_motion(kind, constraint, claim, due):
+    assert said(kind, **MASSLESS, constraints=[constraint], claim=[claim]) == due
+
+
+@pytest.mark.parametrize(
+    ("claim", "due"),
+    [
+        ("(y'')**2 = g**2", "holds"),
+        ("lam*x'' + 2*mu*x'' + y'' + g = 0", "holds"),
+        ("lam + 2*mu = 0", "holds"),
+        ("lam = 0", "fails"),
+        ("(y'')**2 = 2*g**2", "fails"),
+        ("lam*y'' = 0", "fails"),
+    ],
+)
+def test_dependent_constraints_leave_multipliers_free(claim, due):
+    assert said("multiplier-holonomic", **REDUNDANT, claim=[claim]) == due
+
+
+VORTEX = {"q": ["x", "y"], "L": "(x*y_dot - y*x_dot)/2 - (x**2 + y**2)/2"}
+
+
+@pytest.mark.parametrize(
+    ("claim", "due"),
+    [
+        (["y'' + y = 0", "x - y' = 0"], "holds"),
+        (["x' + y = 0", "y' - x = 0", "x'' + x = 0"], "holds"),
+        (["x' + y = 0", "y' - x = 0"], "holds"),
+        (["y'' - y = 0", "x - y' = 0"], "fails"),
+        (["x'' + x = 0", "x - y' = 0"], "fails"),
+        (["x' + y = 0", "y' - x = 0", "x'' - x = 0"], "fails"),
+        (["x'' + x = 0", "y'' + y = 0"], "fails"),
+        (["x' - y = 0", "y' - x = 0"], "fails"),
+    ],
+)
+def test_equations_of_first_order_are_those_of_their_rates_too(claim, due):
+    assert said("euler-lagrange", **VORTEX, claim=claim) == due

@@ -7,6 +7,7 @@ small quantities, all of them are of one order. The two sides must be quotients 
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from itertools import combinations_with_replacement
 from typing import TYPE_CHECKING, cast
 
@@ -147,7 +148,10 @@ def linearisation(reading: Reading) -> Iterator[Question]:
     linear = tuple(exchanged(_linear(e, q, rates, place, domain), deviation) for e in equations)
     written = tuple(exchanged(e, deviation) for e in _of_deviations(reading).equations("claim"))
     unknowns = tuple(acceleration(x) for x in q)
-    yield SameEquations(written, linear, unknowns, domain, lambda: tuple(map(shown_short, linear)), written)
+    shown_linear = partial(map, shown_short, linear)
+    yield SameEquations(
+        written, linear, unknowns, domain, lambda: tuple(shown_linear()), written, time=reading.time
+    )
     bends = tuple(
         Part(f"equation {i} beyond first order", e.diff(a, b))
         for i, e in enumerate(written, 1)
