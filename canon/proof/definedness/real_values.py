@@ -89,8 +89,10 @@ def is_nowhere_real(f: Expr, domain: Domain) -> bool:
 
 
 def _is_negative(f: Expr, domain: Domain) -> bool:
-    if proved_sign(f, domain) == "-":
-        return True
+    """Whether a function is negative but for thin zeros: those of an analytic one that is negative somewhere."""
+    sign = proved_sign(f, domain)
+    if sign.endswith("-"):
+        return sign == "-" or (f != 0 and is_analytic([f], domain))
     elsewhere = Domain((*domain.conditions, cast("Boolean", sp.Ge(f, 0))), domain.box)
     return is_empty(elsewhere, time.monotonic() + SECONDS)
 
