@@ -8,6 +8,7 @@ from canon.exercise.sheet.sheet import Claim
 VORTEX = "(x*y_dot - y*x_dot)/2 - k*(x**2 + y**2)/2"
 PHASE_SPACE = "p*x_dot - p**2/2 - V(x)"
 BOUND = "x_dot**2/2 + x*y"
+DRIVEN = "x_dot**2/2 + y*(x - t**3)"
 
 
 def verdict(L, claim, q=("x", "y")):
@@ -24,7 +25,10 @@ def verdict(L, claim, q=("x", "y")):
         (VORTEX, ["y_dot - k*x"], "fails"),
         (BOUND, ["x_ddot - y", "x"], "holds"),
         (BOUND, ["x_ddot - y", "x - 1"], "fails"),
-        (BOUND, ["x_ddot + y", "x"], "fails"),
+        (BOUND, ["x_ddot + y", "x"], "holds"),  # both say x = y = 0
+        (DRIVEN, ["x_ddot - y", "x - t**3"], "holds"),
+        (DRIVEN, ["y - 6*t", "x - t**3"], "holds"),
+        (DRIVEN, ["x_ddot + y", "x - t**3"], "fails"),
     ],
 )
 def test_degenerate_lagrangians(L, claim, expected):

@@ -10,7 +10,8 @@ from sympy import Expr, Symbol
 
 from canon.exercise.judges.lagrangian import lagrangian_of
 from canon.exercise.question.answer import equations_missing
-from canon.exercise.question.question import Determines, Part, Question, Same, SameEquations, Tells
+from canon.exercise.question.deadline import Deadline
+from canon.exercise.question.question import Determines, Part, Question, Same, SameEquations, Tells, decide
 from canon.expression.symbols.symbol import acceleration, velocity
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.constraint_manifold import on_manifold
@@ -18,6 +19,8 @@ from canon.mechanics.algebra.jets import jets_of, with_jets
 from canon.mechanics.algebra.linear import SingularMatrixError, eliminate, solve_affine
 from canon.mechanics.algebra.substitution import exchanged, substitute
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
+from canon.mechanics.lagrange.hidden_constraints import all_motions
+from canon.proof.domain.verdict import Undecided, Verdict
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -25,6 +28,7 @@ if TYPE_CHECKING:
     from canon.exercise.sheet.reading import Reading
     from canon.mechanics.algebra.constraint_manifold import Branch
     from canon.mechanics.lagrange.lagrangian import Lagrangian
+    from canon.proof.domain.domain import Domain
 
 __all__ = ["bound_by", "is_one_of", "multiplier_holonomic", "nonholonomic"]
 
@@ -83,6 +87,7 @@ def _on_every_motion(reading: Reading) -> Iterator[Question]:
     claims = reading.equations("claim")
     jets = jets_of((*system, *manifold, *claims), reading.domain, t)
     functions = {symbol: function for function, symbol in jets.items()}
+    plain = system, manifold
     system, rates, claims, manifold = (
         [exchanged(e, jets) for e in given] for given in (system, rates, claims, manifold)
     )
@@ -93,13 +98,14 @@ def _on_every_motion(reading: Reading) -> Iterator[Question]:
         here = [substitute(equation, branch.values) for equation in system]
         try:
             solution = solve_affine(here, unknowns, branch.domain)
-        except (
-            SingularMatrixError
-        ):  # dependent constraints or massless coordinates: ask for linear consequences
-            seen = tuple(substitute(claim, branch.values) for claim in open_.values())
-            yield SameEquations((*here, *seen), tuple(here), unknowns, branch.domain, before=len(here))
-            continue
-        through = {**branch.values, **solution}
+            through = {**branch.values, **solution}
+        except SingularMatrixError:  # dependent constraints or massless coordinates
+            if jets or len(branches) > 1:
+                seen = [substitute(claim, branch.values) for claim in open_.values()]
+                yield _linear_consequences(here, seen, unknowns, branch.domain, reading)
+                continue
+            motions = all_motions(*plain, q, unknowns, domain, t)
+            solution, branch, through = {}, motions.branch, motions.through
         parts = tuple(
             Part(f"claim {i + 1}", claim, through=through, key=f"claim[{i}]", written=functions)
             for i, claim in open_.items()
@@ -108,6 +114,24 @@ def _on_every_motion(reading: Reading) -> Iterator[Question]:
     free = "it is true of anything" if not any(claims) else "it follows from the constraints alone"
     yield Tells(tuple(_on_any_motion(claims, rates, unknowns[: len(q)], branch) for branch in branches), free)
     yield Determines(partial(_left_open, claims, rates, system, unknowns, branches))
+
+
+def _linear_consequences(
+    system: Sequence[Expr],
+    claims: Sequence[Expr],
+    unknowns: Sequence[Symbol],
+    domain: Domain,
+    reading: Reading,
+) -> Verdict:
+    """Tell whether claims are combinations of equations; what is none may follow from them with their rates."""
+    same = SameEquations((*system, *claims), tuple(system), tuple(unknowns), domain, before=len(system))
+    verdict = decide(same, Deadline.after(reading.claim.budget / 4))
+    if verdict.fails:
+        raise Undecided(
+            "the equations do not determine all accelerations and multipliers; where functions are arbitrary, or "
+            "constraints have several branches, what follows from the rates of equations is not looked into"
+        )
+    return verdict
 
 
 def _on_any_motion(

@@ -31,7 +31,9 @@ __all__ = ["constraint_class", "degrees_of_freedom"]
 
 _PAIRS = (("holonomic", "nonholonomic"), ("scleronomic", "rheonomic"), ("bilateral", "unilateral"))
 _WORDS_APART = re.compile(r"\s*[,;]\s*(?:and\s+)?|\s+and\s+")
-_RELATION = re.compile(r"(<=|>=|<|>|=|≤|≥|\\leq?\b|\\geq?\b)")
+_RELATION_OR_BRACKET = re.compile(
+    r"(?P<open>[(\[{]|\\begin\b)|(?P<close>[)\]}]|\\end\b)|<=|>=|<|>|=|≤|≥|\\leq?\b|\\geq?\b"
+)
 
 
 def constraint_class(reading: Reading) -> Iterator[Question]:
@@ -137,7 +139,7 @@ def _constraints(reading: Reading) -> ConstraintSystem:
 def _relations(reading: Reading, where: str, text: str) -> Iterator[tuple[str, Expr]]:
     """Yield each relation in a constraint, with the difference of its sides; an expression alone is one that is = 0."""
     latex = text.strip().startswith("$")
-    pieces = _RELATION.split(text.strip().strip("$") if latex else text)
+    pieces = _at_relations(text.strip().strip("$") if latex else text)
     if pieces[1::2] in ([], ["="]):
         sides: tuple[Expr, ...] = (reading.constraint(where, text),)
     else:
@@ -148,6 +150,24 @@ def _relations(reading: Reading, where: str, text: str) -> Iterator[tuple[str, E
         yield "=", sides[0]
     for left, relation, right in zip(sides, pieces[1::2], sides[1:], strict=False):
         yield relation, left - right
+
+
+def _at_relations(text: str) -> list[str]:
+    """Return the sides of a text and the relations between them; one inside brackets says when a piece applies.
+
+    Examples
+    --------
+    >>> _at_relations("x - Piecewise((1, t > 3), (2, True)) >= 0"), _at_relations("0 < x")
+    (['x - Piecewise((1, t > 3), (2, True)) ', '>=', ' 0'], ['0 ', '<', ' x'])
+    """
+    pieces, start, depth = list[str](), 0, 0
+    for found in _RELATION_OR_BRACKET.finditer(text):
+        bracket = found["open"] or found["close"]
+        depth += 0 if not bracket else 1 if found["open"] else -1
+        if not bracket and depth == 0:
+            pieces += [text[start : found.start()], found[0]]
+            start = found.end()
+    return [*pieces, text[start:]]
 
 
 def _first_of(pair: tuple[str, str], constraints: ConstraintSystem) -> Verdict:

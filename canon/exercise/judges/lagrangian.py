@@ -127,6 +127,7 @@ def routhian(reading: Reading) -> Iterator[Question]:
             lambda: routh(lagrangian, ignorable, momenta, domain=reading.domain).equations,
             written,
             through,
+            time=reading.time,
         )
         yield more_than_zero(written, reading.domain)
 
@@ -144,7 +145,8 @@ def lagrangian_equivalence(reading: Reading) -> Iterator[Question]:
         if reading.has("F"):
             reading.fault("F", "stands beside the relation gauge only; leave it out, or write gauge")
         systems = [Lagrangian(L, q, t=t).equations for L in (second, first)]
-        yield SameEquations(systems[0], systems[1], tuple(acceleration(x) for x in q), reading.domain)
+        accelerations = tuple(acceleration(x) for x in q)
+        yield SameEquations(systems[0], systems[1], accelerations, reading.domain, time=t)
         check_gauge_term(_in_motion(second - first, q), q, t, reading.domain)
         yield from _no_steps(first, second, q, reading)
     elif relation != "gauge":
@@ -204,7 +206,7 @@ def same_motion(reading: Reading, lagrangian: Lagrangian) -> Iterator[Question]:
     unknowns = tuple(acceleration(x) for x in lagrangian.q)
     right = lagrangian.equations
     claimed = reading.equations("claim")
-    yield SameEquations(claimed, right, unknowns, reading.domain, lambda: right, claimed)
+    yield SameEquations(claimed, right, unknowns, reading.domain, lambda: right, claimed, time=reading.time)
     yield more_than_zero(claimed, reading.domain)
 
 

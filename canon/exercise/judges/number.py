@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import product
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from sympy import Expr, Rational
@@ -22,7 +22,9 @@ from canon.proof.domain.verdict import Counterexample, Status, Undecided, Verdic
 from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from sympy import Basic, Symbol
 
     from canon.exercise.sheet.reading import Reading
 
@@ -196,7 +198,42 @@ def _given(reading: Reading) -> dict[str, Expr]:
             reading.fault(f"given.{name}", f"is not declared; {reading.scope.near(name)}")
         if f.free_symbols:
             reading.fault(f"given.{name}", "should be a number")
+        said = reading.claim.keys.get("parameters", {}).get(name, "real")
+        if not _may_be(reading.scope.names[name], f, _SHARE * reading.claim.budget):
+            reading.fault(f"given.{name}", f"{f} is not {said}, as is said of {name} under parameters")
+    values = {reading.scope.names[name]: f for name, f in table.items()}
+    for i, condition in enumerate(reading.domain.conditions):
+        if _is_false(condition, values, _SHARE * reading.claim.budget):
+            reading.fault("given", f"condition {i + 1} of the domain, {condition}, is false for these values")
     return table
+
+
+def _may_be(s: Symbol, number: Expr, seconds: float) -> bool:
+    """Whether a number is what is assumed of a symbol: √(g²) was read as g for a positive g, and is not for another.
+
+    Raises
+    ------
+    Undecided
+        Where that was not decided.
+    """
+    if number.is_real is False or (s.is_integer and number.is_integer is False):
+        return False
+    if s.is_positive or s.is_negative or s.is_nonzero:
+        sign = sign_of(number, seconds)
+        return sign > 0 if s.is_positive else sign < 0 if s.is_negative else sign != 0
+    return True
+
+
+def _is_false(condition: Basic, values: Mapping[Symbol, Expr], seconds: float) -> bool:
+    """Whether given values certainly do not satisfy a condition."""
+    try:
+        there = condition.subs(list(values.items()), simultaneous=True)
+    except TypeError:  # a side is not real
+        return True
+    if not isinstance(there, sp.core.relational.Relational) or there.free_symbols:
+        return there is sp.false
+    sign = sign_of(cast("Expr", there.lhs - there.rhs), seconds)
+    return bool(there.func(sp.Integer(sign), 0) is sp.false)
 
 
 def _wrong(shown: str, a: Expr, right: Sequence[Expr], tolerance: _Tolerance) -> Verdict:

@@ -33,6 +33,8 @@ from canon.proof.vanish import vanishes
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
+    from canon.proof.domain.domain import Domain
+
 __all__ = ["parameters"]
 
 SHARE = 0.4
@@ -183,7 +185,27 @@ def _holds_with(ask: Ask, inner: Reading, family: Family, deadline: Deadline) ->
         return Verdict(Status.FAILS, certificate="exact", feedback="the domain excludes that")
     except (Undecided, SingularMatrixError, EmptyDomainError) as reason:
         return Verdict(Status.UNDECIDED, evidence=(Evidence("open", str(reason)),))
+    verdicts += _whole(family, inner.domain, deadline) if not any(v.fails for v in verdicts) else []
     return all_hold(verdicts) if verdicts else Verdict(Status.UNDECIDED)
+
+
+def _whole(family: Family, domain: Domain, deadline: Deadline) -> list[Verdict]:
+    """Return whether values of whole parameters are whole numbers: n is one exactly where sin πn = 0.
+
+    A value that is whole for some of the open parameters only, as k/2, may be meant where it is: that is UNDECIDED.
+    """
+    found: list[Verdict] = []
+    for s, value in family.items():
+        if not s.is_integer or value.is_integer:
+            continue
+        verdict = vanishes(sp.sin(sp.pi * value), domain, budget=deadline.left)
+        if verdict.fails and value.is_number:
+            verdict = replace(verdict, feedback=f"{value} is no whole number")
+        elif not verdict.holds:
+            why = f"{s} = {value} was not proved to be a whole number for all values of what it is written in"
+            verdict = Verdict(Status.UNDECIDED, evidence=(Evidence("open", why),))
+        found.append(verdict)
+    return found
 
 
 def _questions(ask: Ask, reading: Reading) -> Iterator[Question]:

@@ -6,6 +6,7 @@ with their values, such as the energy of a start from rest: the motions meant ar
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
@@ -18,6 +19,8 @@ from canon.exercise.question.answer import stay_open
 from canon.exercise.question.deadline import SIDE_SECONDS, Deadline
 from canon.exercise.question.implicit_point import refuted_at_a_point
 from canon.exercise.question.question import TELLING, Determines, Part, Question, Same, Stated, decide, fails
+from canon.exercise.sheet.kept_parses import parsed
+from canon.expression.as_written import as_written
 from canon.expression.symbols.symbol import Rate, velocity
 from canon.expression.text.open_readings import is_angle
 from canon.mechanics.algebra.constraint_manifold import EmptyDomainError, check_not_empty, on_manifold
@@ -25,8 +28,12 @@ from canon.mechanics.algebra.solve_for_symbol import named
 from canon.mechanics.algebra.substitution import exchanged, substitute, symbols_of
 from canon.mechanics.reduction.constrained_motion import motions_with_integrals
 from canon.proof.analytic import proved_sign
+from canon.proof.definedness.definedness import lack_of_value
+from canon.proof.definedness.formula_around import put_in
+from canon.proof.definedness.hazards import hazards
 from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict, all_hold
 from canon.proof.kinks import vanishes_off_kinks
+from canon.proof.trees.anatomy import anatomy
 from canon.proof.trees.polynomial import polynomial_factors
 
 if TYPE_CHECKING:
@@ -114,6 +121,10 @@ def leaving_condition(reading: Reading) -> Iterator[Question]:
         verdict = _same_zeros(force, claimed, motion.branch, q, deadline)
         if verdict.fails and (place := _place_of_an_angle(leaves, force, q)) is not None:
             verdict = _same_zeros(force, motion.along(place), motion.branch, q, deadline)
+        if verdict.holds:
+            verdict = all_hold(
+                [verdict, *_valued_at_zeros(_leaves_as_written(reading), force, motion, deadline)]
+            )
         yield Stated(verdict, lambda force=force: f"the reaction {shown_short(sp.factor_terms(force))} = 0")
     if not met or any(place not in met for place, _ in elsewhere):
         reading.fault("leaves", "holds nowhere along the contact")
@@ -197,6 +208,43 @@ def _same_zeros(
         _follows(force, claimed, "the reaction vanishes elsewhere too", branch, q, deadline),
     ]
     return all_hold(both, name)
+
+
+def _leaves_as_written(reading: Reading) -> Expr:
+    """Return the claimed equation with nothing cancelled in it."""
+    (text,) = reading.words("leaves")
+    plain = reading.equations("leaves")[0]
+    return plain if "leaves[0]" in reading.instead else parsed(as_written, text, reading.scope)
+
+
+def _valued_at_zeros(
+    written: Expr, force: Expr, motion: MotionOnManifold, deadline: Deadline
+) -> Iterator[Verdict]:
+    """Yield what speaks against an equation having a value where the reaction vanishes, nothing if it has.
+
+    (3 cos θ − 2)²/(3 cos θ − 2) = 0 is true at no point: where the quotient could vanish it has no value. Cancelled it
+    would be another equation, so it is asked as it was written, at every zero of the reaction.
+    """
+    risky = [h for h in hazards(anatomy([written]).parts) if h.argument.free_symbols]
+    if not risky:
+        return
+    try:
+        zeros = on_manifold([force], motion.branch.domain)
+    except EmptyDomainError:
+        return
+    except Undecided as reason:
+        why = f"whether the equation has a value where the reaction vanishes was not decided: {reason}"
+        yield Verdict(Status.UNDECIDED, evidence=(Evidence("open", why),))
+        return
+    known = {s: f for s, f in {**motion.branch.values, **motion.solution}.items() if written.has(s)}
+    for b in zeros:
+        there = put_in(put_in(exchanged(written, motion.jets), dict(known)), dict(b.values))
+        lack = lack_of_value(there, b.domain, time.monotonic() + min(SIDE_SECONDS, deadline.left))
+        if lack is not None:
+            sentence = lack.sentence("the equation, where the reaction vanishes,")
+            if lack.proved:
+                yield fails("the equation has a value", sentence)
+            yield Verdict(Status.UNDECIDED, evidence=(Evidence("open", sentence),))
 
 
 def _follows(

@@ -6,6 +6,8 @@ small quantities, all of them are of one order. The two sides must be quotients 
 
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import partial
 from itertools import combinations_with_replacement
 from typing import TYPE_CHECKING, cast
 
@@ -26,12 +28,15 @@ from canon.exercise.question.question import (
 )
 from canon.exercise.question.series_expansion import check_analytic, coefficient, coefficients, without_kinks
 from canon.exercise.sheet.sympy_trees import shown
-from canon.expression.symbols.symbol import acceleration, velocity
+from canon.expression.symbols.symbol import Coordinate, acceleration, velocity
 from canon.expression.symbols.user_input import counted
+from canon.frozen_mapping import FrozenMapping
 from canon.mechanics.algebra.constraint_manifold import transported
 from canon.mechanics.algebra.substitution import exchanged, substitute, symbols_of
 from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.proof.analytic import proved_sign
 from canon.proof.domain.domain import Domain
+from canon.proof.domain.relations import parts_of
 from canon.proof.domain.verdict import Status, Undecided, Verdict, all_hold
 from canon.proof.kinks import off_kinks, vanishes_off_kinks
 
@@ -60,12 +65,15 @@ def first_order(reading: Reading) -> Iterator[Question]:
         reading.fault("order", f"should be a whole number from -{MOST_ORDERS} to {MOST_ORDERS}")
     small = small_symbols(reading)
     names, deadline = ", ".join(map(str, small)), Deadline.after(0.9 * reading.claim.budget)
+    tied = _tied(small, reading.domain)
+    small, domain = [s for s in small if s not in tied], transported(reading.domain, tied)
     said = f"right to {_ordinal(order)} order in {names}"
     verdicts: list[Verdict] = []
     for i, (f, g) in enumerate(zip(exact, claimed, strict=True)):
         name = f"claim {i + 1}, to {_ordinal(order)} order in {names}"
-        f, g = map(off_kinks((f, g), reading.domain).seen, (f, g))
-        verdict, at = _same_to_order(f, g, small, order, reading.domain, deadline)
+        f, g = substitute(f, tied), substitute(g, tied)
+        f, g = map(off_kinks((f, g), domain).seen, (f, g))
+        verdict, at = _same_to_order(f, g, small, order, domain, deadline)
         if verdict.fails:
             yield Stated(
                 Verdict(
@@ -76,7 +84,7 @@ def first_order(reading: Reading) -> Iterator[Question]:
                     verdict.counterexample,
                     feedback=_where_wrong(at, verdict.residual, names),
                 ),
-                lambda f=f: _expanded(f, small, order, reading.domain),
+                lambda f=f: _expanded(f, small, order, domain),
             )
             return
         verdicts.append(verdict)
@@ -104,7 +112,10 @@ def _is_expanded(f: Expr, small: Sequence[Symbol]) -> bool:
 
 
 def linearisation(reading: Reading) -> Iterator[Question]:
-    """The place is an equilibrium, and the claimed equations are Lagrange's to first order in q, q̇, q̈ about it."""
+    """The place is an equilibrium, and the claimed equations are Lagrange's to first order in q, q̇, q̈ about it.
+
+    What is assumed of coordinates is said of places: a deviation from a place has either sign, so that √(r²) is no r.
+    """
     q = reading.symbols("q")
     table, names = reading.table("equilibrium"), {x.name: x for x in q}
     if set(table) != set(names):
@@ -133,17 +144,29 @@ def linearisation(reading: Reading) -> Iterator[Question]:
         )  # fmt: skip
         return
     yield at_rest
-    linear = tuple(_linear(e, q, rates, place, domain) for e in equations)
-    written = reading.equations("claim")
+    deviation = {x: Coordinate(x.name, real=True) for x in q}
+    linear = tuple(exchanged(_linear(e, q, rates, place, domain), deviation) for e in equations)
+    written = tuple(exchanged(e, deviation) for e in _of_deviations(reading).equations("claim"))
     unknowns = tuple(acceleration(x) for x in q)
-    yield SameEquations(written, linear, unknowns, domain, lambda: tuple(map(shown_short, linear)), written)
+    shown_linear = partial(map, shown_short, linear)
+    yield SameEquations(
+        written, linear, unknowns, domain, lambda: tuple(shown_linear()), written, time=reading.time
+    )
     bends = tuple(
         Part(f"equation {i} beyond first order", e.diff(a, b))
         for i, e in enumerate(written, 1)
-        for a, b in combinations_with_replacement((*q, *rates), 2)
+        for a, b in combinations_with_replacement((*deviation.values(), *rates), 2)
     )
     yield Same(bends, domain, None, lambda part: f"{part.name}: a claimed equation is not linear")
     yield more_than_zero(written, domain)
+
+
+def _of_deviations(reading: Reading) -> Reading:
+    """Return the claim with nothing assumed of its coordinates."""
+    said = reading.claim.keys.get("parameters", {})
+    free = FrozenMapping({name: word for name, word in said.items() if name not in reading.words("q")})
+    keys = FrozenMapping({**reading.claim.keys, **({"parameters": free} if said else {})})
+    return replace(reading, claim=replace(reading.claim, keys=keys))
 
 
 def _check_real(place: Mapping[Symbol, Expr], domain: Domain) -> None:
@@ -188,6 +211,7 @@ def _same_to_order(
 ) -> tuple[Verdict, int]:
     """Tell whether f − g = o(εⁿ), and at which order it fails first."""
     epsilon = sp.Dummy("epsilon", real=True)
+    forgotten = [c for c in parts_of(domain.conditions) if _is_forgotten(c, small)]
     domain = _domain_near(small, domain)
     above, below = _quotient(f - g, small, epsilon, domain)
     start, lowest = _order_of(below, epsilon, domain, deadline)
@@ -195,6 +219,8 @@ def _same_to_order(
     highest = order + start
     for k, found in enumerate(coefficients(above, epsilon, highest) if highest >= 0 else ()):
         verdict = vanishes_off_kinks(found, domain, budget=deadline.left)
+        if verdict.fails and forgotten:
+            raise Undecided(f"what {forgotten[0]} says of the rest was not used; write it without {small[0]}")
         if verdict.fails:
             left = shown_short(found / lowest * _power_of(small, k - start))
             return Verdict(
@@ -204,14 +230,57 @@ def _same_to_order(
     return all_hold(verdicts), order
 
 
+def _tied(small: Sequence[Symbol], domain: Domain) -> dict[Symbol, Expr]:
+    """Return the values that equalities with something small in them give to symbols, as b = ε a to b.
+
+    A value is analytic where all that is small is zero, so that what is o(εⁿ) is so in whichever of these symbols the
+    rest is written. One small quantity is tied to others only by what is homogeneous of first degree, which becomes
+    ε times itself where each of them does.
+
+    Raises
+    ------
+    Undecided
+        Where an equality gives no such value: what is fixed while ε goes to zero is not known then.
+    """
+    found: dict[Symbol, Expr] = {}
+    equalities = [c for c in parts_of(domain.conditions) if isinstance(c, sp.Eq)]
+    ties = [cast("Expr", c.lhs) - cast("Expr", c.rhs) for c in equalities]
+    while any(tie.has(*small) for tie in ties):
+        tie = next(tie for tie in ties if tie.has(*small))
+        step = _value_near(tie, small, domain)
+        if step is None:
+            raise Undecided(
+                f"{tie} = 0 in the domain ties what is small to the rest; write one of its symbols by the others"
+            )
+        found = {s: substitute(value, step) for s, value in found.items()} | step
+        ties = [other for other in (substitute(t, step) for t in ties if t is not tie) if other != 0]
+    if found and all(s in found for s in small):
+        raise Undecided("the domain keeps what is small at one value; leave that condition out")
+    return found
+
+
+def _value_near(gap: Expr, small: Sequence[Symbol], domain: Domain) -> dict[Symbol, Expr] | None:
+    """Return the value that an equation, linear in a symbol, gives to it, where it does so at ε = 0 too."""
+    scale, zero = sp.Dummy("scale", positive=True), dict.fromkeys(small, sp.S.Zero)
+    homogeneous = sp.expand(substitute(gap, {s: scale * s for s in small}) - scale * gap) == 0
+    for s in sorted(symbols_of(gap), key=lambda s: (s in small, str(s))):
+        slope = gap.diff(s)
+        if slope.has(s) or s.is_integer or (s in small and not (homogeneous and not slope.has(*small))):
+            continue
+        there = substitute(slope, zero)
+        if there.is_nonzero or proved_sign(there, domain) in ("+", "-"):
+            return {s: sp.cancel(s - gap / slope)}
+    return None
+
+
 def _domain_near(small: Sequence[Symbol], domain: Domain) -> Domain:
     """Return the domain of the others where what is small goes to zero: a > λ leaves a ≥ 0."""
     conditions: list[Boolean] = []
-    for c in domain.conditions:
+    for c in parts_of(domain.conditions):
         if not c.has(*small):
             conditions.append(c)
         elif isinstance(c, sp.Gt | sp.Lt | sp.Ge | sp.Le):
-            gap = substitute(cast("Expr", c.gts) - cast("Expr", c.lts), dict.fromkeys(small, sp.S.Zero))
+            gap = substitute(_gap_of(c), dict.fromkeys(small, sp.S.Zero))
             conditions.append(sp.Ge(gap, 0))
     if sp.false in conditions:
         raise Undecided(
@@ -219,6 +288,21 @@ def _domain_near(small: Sequence[Symbol], domain: Domain) -> Domain:
             "where the claim is made; leave that condition out"
         )
     return Domain(tuple(c for c in conditions if c is not sp.true), domain.box)
+
+
+def _gap_of(bound: sp.Gt | sp.Lt | sp.Ge | sp.Le) -> Expr:
+    return cast("Expr", bound.gts) - cast("Expr", bound.lts)
+
+
+def _is_forgotten(condition: Boolean, small: Sequence[Symbol]) -> bool:
+    """Whether nothing is left of a condition on more than what is small where that is zero, as of ε a > 0."""
+    if not condition.has(*small) or isinstance(condition, sp.Eq | sp.Ne):
+        return False
+    gap = _gap_of(cast("sp.Gt", condition))
+    if substitute(gap, dict.fromkeys(small, sp.S.Zero)) != 0:
+        return False
+    open_ = [factor for factor in sp.Mul.make_args(sp.factor(gap)) if not factor.is_positive]
+    return not sp.Mul(*open_).free_symbols <= {*small}
 
 
 def _power_of(small: Sequence[Symbol], k: int) -> Expr:

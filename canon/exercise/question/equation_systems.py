@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from canon.mechanics.algebra.substitution import symbols_of
+from canon.expression.symbols.symbol import Coordinate
+from canon.mechanics.algebra.substitution import substitute, symbols_of
+from canon.mechanics.lagrange.hidden_constraints import all_motions
 from canon.proof.domain.verdict import Status, Undecided, Verdict
 from canon.proof.equivalence import NotAffineError, Stray, not_affine, systems_compared, without_solution
 from canon.proof.kinks import off_kinks, vanishes_off_kinks
@@ -24,6 +26,9 @@ __all__ = ["AFFINE", "same_equations"]
 
 AFFINE = "the equations are affine in what they determine"
 
+SECONDS = 1.0
+"""Time for the question whether one equation holds on the motions of others."""
+
 LONGEST_FORMULA = 200
 """Characters of an equation that is still written out in a sentence."""
 
@@ -35,11 +40,13 @@ def same_equations(
     domain: Domain,
     deadline: Deadline,
     before: int = 0,
+    time: Symbol | None = None,
 ) -> Verdict:
     """Tell whether two systems, affine in the unknowns, have the same solutions at generic points.
 
-    The claim counts its equations from the one after the first ``before``. A verdict that turned on an equation
-    that is not affine answers the question ``AFFINE``.
+    The claim counts its equations from the one after the first ``before``. Where the right system binds the state, the
+    rates of its equations belong to it too: they are looked at where the ``time`` is given. A verdict that turned on an
+    equation that is not affine answers the question ``AFFINE``.
     """
     off = off_kinks((*claimed, *right), domain)
     claimed, right = (tuple(map(off.seen, system)) for system in (claimed, right))
@@ -58,8 +65,44 @@ def same_equations(
     except NotAffineError as error:  # |u| + 1 = 0 has no second derivative off its kink
         return Verdict(Status.FAILS, AFFINE, "exact", feedback=_not_affine(error, before))
     if verdict.holds and without_solution(right, unknowns, domain):
-        return _equations_of_lower_order(claimed, right, unknowns, domain, deadline, said)
+        lower = _equations_of_lower_order(claimed, right, unknowns, domain, deadline, said)
+        if lower.fails and not _have_other_motions(claimed, right, unknowns, domain, time):
+            return Verdict(Status.HOLDS, lower.question, "exact")
+        return lower
     return verdict
+
+
+def _have_other_motions(
+    claimed: tuple[Expr, ...],
+    right: tuple[Expr, ...],
+    unknowns: tuple[Symbol, ...],
+    domain: Domain,
+    time: Symbol | None,
+) -> bool:
+    """Tell whether some motion of one system is none of the other, where one is no combination of the other.
+
+    x'' = −x is no combination of x' = y, y' = −x, and holds on all of its motions: each equation is asked on all
+    motions of the other system, the rates of equations that bind the state included.
+
+    Raises
+    ------
+    Undecided
+        Where that was not decided.
+    """
+    if time is None:
+        raise Undecided("the equations bind the state, and what follows from their rates was not looked into")
+    named = {s.name: s for equation in (*claimed, *right) for s in symbols_of(equation)}
+    bases = [u.name.removesuffix("_ddot") for u in unknowns]
+    q = [named.get(base, Coordinate(base, real=True)) for base in bases]
+    for given, asked in ((right, claimed), (claimed, right)):
+        motions = all_motions(given, (), q, unknowns, domain, time)
+        values = [substitute(equation, motions.through) for equation in asked]
+        verdicts = [vanishes_off_kinks(value, motions.branch.domain, SECONDS) for value in values]
+        if any(verdict.fails for verdict in verdicts):
+            return True
+        if not all(verdict.holds for verdict in verdicts):
+            raise Undecided("whether an equation holds on all motions of the others was not decided")
+    return False
 
 
 def _equations_of_lower_order(

@@ -22,6 +22,7 @@ from canon.proof.analytic import proved_sign
 from canon.proof.continuity.smooth import PIECED
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.verdict import Undecided
+from canon.proof.trees.function_places import at_plain_places, outermost, places_apart
 from canon.proof.trees.polynomial import polynomial_factors
 from canon.proof.trees.sympy_types import arguments, rational
 from canon.proof.vanish import vanishes
@@ -126,7 +127,7 @@ def _completed(search: _Search, family: Family, rounds: int) -> Iterator[Family]
     if not _allowed(family, search.domain):
         return
     domain = _narrowed(search.domain, family)
-    left = [r for r in (substitute(r, family) for r in search.residuals) if r != 0]
+    left = [r for r in (at_plain_places(substitute(r, family)) for r in search.residuals) if r != 0]
     left = [r for r in left if not vanishes(r, domain, budget=search.deadline.left).holds]
     if not left:
         yield family
@@ -145,23 +146,59 @@ def _completed(search: _Search, family: Family, rounds: int) -> Iterator[Family]
 def _next_step(
     search: _Search, left: Sequence[Expr], free: Sequence[Symbol], domain: Domain, rounds: int
 ) -> list[Family]:
-    """Return values of one more parameter by which expressions may vanish; none where they certainly do not."""
+    """Return values of one more parameter by which expressions may vanish; none where they certainly do not.
+
+    The conditions take values of one arbitrary function at different places for independent of each other; where
+    the places are one, they are not: parameters that bring them together are a case of its own.
+    """
     why = "the conditions on the parameters were not found"
+    left, together = _brought_together(search, left, free, domain, rounds)
     for most in (FEW_CONDITIONS, MOST_CONDITIONS):
         found = sorted(set(_conditions(left, free, search.given, domain, most)), key=_simplicity)
         conditions = [c for c in found if c.has(*free)]
         of_given = [vanishes(c, domain, budget=search.deadline.left) for c in found if not c.has(*free)]
         if any(verdict.fails for verdict in of_given):
-            return []
+            return together
         if any(verdict.undecided for verdict in of_given) or not conditions:
             continue
         if rounds == 0 or search.deadline.left < LAST:
             raise Undecided("the conditions on the parameters were not solved in time")
         solved = _solved_first(conditions, free, domain)
         if solved is not None:
-            return solved
+            return [*together, *solved]
         why = f"the condition {conditions[0]} = 0 on the parameters has no solution in closed form here"
     raise Undecided(why)
+
+
+def _brought_together(
+    search: _Search, left: Sequence[Expr], free: Sequence[Symbol], domain: Domain, rounds: int
+) -> tuple[list[Expr], list[Family]]:
+    """Return expressions with one way of writing each place of an arbitrary function, and where two places are one.
+
+    Raises
+    ------
+    Undecided
+        Where that was not told: there f(u) and f(v) might be one number, or two.
+    """
+    pairs = list(places_apart(left))
+    same = {u: v for f, g in pairs for u, v in zip(f.args, g.args, strict=True) if sp.expand(u - v) == 0}
+    left = [exchanged(r, same) for r in left] if same else list(left)
+    found: list[Family] = []
+    for f, g in places_apart(left):
+        gaps = tuple(u - v for u, v in zip(f.args, g.args, strict=True) if u != v)
+        if any(gap.has(*PIECED) for gap in gaps):
+            raise Undecided(f"whether {f} and {g} are taken at one place depends on the state")
+        if not any(gap.has(*free) for gap in gaps):
+            if not any(vanishes(gap, domain, budget=search.deadline.left).fails for gap in gaps):
+                raise Undecided(f"whether {f} and {g} are taken at one place was not decided")
+            continue
+        if rounds == 0:
+            raise Undecided("the conditions on the parameters were not solved in time")
+        at = _Search(gaps, tuple(free), search.given, domain, search.deadline)
+        found += _completed(at, {}, rounds - 1)
+    if {} in found:
+        raise Undecided("an arbitrary function is taken at one place that is written in two ways")
+    return left, found
 
 
 def _solved_first(conditions: Sequence[Expr], free: Sequence[Symbol], domain: Domain) -> list[Family] | None:
@@ -212,8 +249,7 @@ def _conditions(
 
 def _independent(residual: Expr) -> Iterator[Expr]:
     """Yield the coefficients of arbitrary functions and their derivatives, which take any values at a state."""
-    unknown = [f for f in residual.atoms(sp.Derivative, sp.Subs, AppliedUndef) if f.has(AppliedUndef)]
-    outer = [f for f in unknown if not any(f is not g and g.has(f) for g in unknown)]
+    outer = outermost(residual)
     names: dict[Expr, Symbol] = {f: sp.Dummy("f") for f in sorted(outer, key=sp.default_sort_key)}
     numerator = sp.numer(sp.together(exchanged(residual, names))) if names else residual
     if not names:

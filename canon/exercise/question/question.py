@@ -146,6 +146,8 @@ class SameEquations:
         What their symbols are in terms of those of the systems, such as p = ∂L/∂q̇.
     before
         How many equations of the claimed system stand before those that were written.
+    time
+        The time, where the rates of equations that bind the state are meant to follow from them.
     """
 
     claimed: tuple[Expr, ...]
@@ -156,6 +158,7 @@ class SameEquations:
     written: tuple[Expr, ...] = ()
     through: Mapping[Symbol, Expr] = field(default_factory=lambda: FrozenMapping({}))
     before: int = 0
+    time: Symbol | None = None
 
 
 @dataclass(frozen=True)
@@ -311,8 +314,8 @@ def decide(question: Question, deadline: Deadline) -> Verdict:
             if not other or any(each.fails for each in other):
                 return replace(verdict, feedback=said)
             return all_hold(other, part.name)  # which may be open
-        case SameEquations(claimed, right, unknowns, domain, before=before):
-            return same_equations(claimed, right, unknowns, domain, deadline, before)
+        case SameEquations(claimed, right, unknowns, domain, before=before, time=t):
+            return same_equations(claimed, right, unknowns, domain, deadline, before, t)
         case Regular(matrix, name, domain, singular_is, exceptions):
             off = off_kinks(matrix.flat(), domain)
             seen = matrix.applyfunc(off.seen)

@@ -16,6 +16,7 @@ from canon.proof.analytic import proved_sign
 from canon.proof.continuity.continuity import continuity
 from canon.proof.continuity.jumps import shown
 from canon.proof.continuity.one_sided import cuts_of
+from canon.proof.definedness.real_values import is_nowhere_real, real_bounds
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain.domain import Domain, conditions_hold
 from canon.proof.domain.verdict import Counterexample, Evidence, Status, Verdict
@@ -29,10 +30,13 @@ if TYPE_CHECKING:
     from sympy import Expr, Rational, Symbol
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["motion_is_continuous", "motion_is_real", "where_real"]
+__all__ = ["motion_is_continuous", "motion_is_real", "real_somewhere", "where_real"]
 
 POINTS = 40
 """Points at which a motion is looked at."""
+
+MOVED = 6
+"""Points from which one that makes a motion real is looked for."""
 
 SECONDS = 0.5
 """Time for the proof that an angle keeps away from the origin."""
@@ -134,32 +138,88 @@ def _is_real(place: Expr, x: Symbol, domain: Domain) -> Verdict:
 
     A root or logarithm leaves the real numbers where the motion ends: it is claimed up to there.
     """
-    question = f"{x} is real"
-    real, example = 0, None
-    for point in domain.points(free_symbols(place), POINTS) if _may_be_complex(place) else ():
-        with precision(128):
-            try:
-                ball = value(place, point)
-            except (NotDecided, Undefined, Unmodelled):
-                continue
-            if ball.imag.contains(0):
-                real += 1
-            elif example is None:
-                names = {s.name: str(number) for s, number in point.items()}
-                example = Counterexample(names, shown(ball), "a real number", 8)
+    verdict = real_somewhere([place], domain, f"{x} is real")
+    if verdict.holds and verdict.assumed:
+        return replace(verdict, assumed=(f"{x} = {place} is claimed where it is real",))
+    if verdict.fails and verdict.counterexample is not None:
+        example = verdict.counterexample
+        where = ", ".join(f"{name} = {number}" for name, number in example.point.items())
+        why = f"{x} = {place} is no motion: it is not real, but {example.left} at {where}"
+        return replace(verdict, feedback=why)
+    return verdict
+
+
+def real_somewhere(functions: Sequence[Expr], domain: Domain, question: str) -> Verdict:
+    """Tell whether functions are real together somewhere: where one is not, it is not claimed.
+
+    A point where one is not real refutes nothing, nor do many: √(t − 1000) is real later. FAILS is said where
+    a function is proved to be real almost nowhere, and where one holds i and is not real at a point. Points where all
+    are real are looked for where roots, logarithms and arcs are; where none is found that is UNDECIDED.
+
+    Parameters
+    ----------
+    functions, domain
+        The functions, and where they are meant.
+    question
+        What is asked.
+
+    Examples
+    --------
+    >>> t = sp.Symbol("t", real=True)
+    >>> [real_somewhere([f], Domain(), "").status.name for f in (sp.sqrt(t - 1000), sp.sqrt(-1 - t**2), sp.I * t)]
+    ['HOLDS', 'FAILS', 'FAILS']
+    """
+    looked_at = [f for f in functions if f.is_real is not True]
+    real, example = _looked_at(looked_at, domain)
     if example is None:
         return Verdict(Status.HOLDS, question, "exact")
-    if real and not place.has(sp.I):
-        return Verdict(
-            Status.HOLDS, question, "exact", assumed=(f"{x} = {place} is claimed where it is real",)
-        )
-    where = ", ".join(f"{name} = {number}" for name, number in example.point.items())
-    why = f"{x} = {place} is no motion: it is not real, but {example.left} at {where}"
-    return Verdict(Status.FAILS, question, "ball", counterexample=example, feedback=why)
+    guilty, shown_there = example
+    if guilty.has(sp.I) or is_nowhere_real(guilty, domain):
+        return Verdict(Status.FAILS, question, "ball", counterexample=shown_there)
+    bounds = real_bounds(looked_at, domain)
+    there = Domain((*domain.conditions, *bounds), domain.box)
+    if real or (
+        bounds and (_looked_at(looked_at, there)[0] or _is_real_further_on(looked_at, bounds, domain))
+    ):
+        return Verdict(Status.HOLDS, question, "exact", assumed=("claimed where it is real",))
+    why = f"no point was found where {guilty} is real; say in the domain where it is"
+    return Verdict(Status.UNDECIDED, question, evidence=(Evidence("open", why),))
 
 
-def _may_be_complex(place: Expr) -> bool:
-    return place.is_real is not True
+def _looked_at(functions: Sequence[Expr], domain: Domain) -> tuple[bool, tuple[Expr, Counterexample] | None]:
+    """Return whether all functions may be real at one of some points, and one that is not, with where it is not."""
+    real, example = False, None
+    symbols = {s for f in functions for s in free_symbols(f)}
+    for point in domain.points(symbols, POINTS) if functions else ():
+        try:
+            with precision(128):
+                balls = [(f, value(f, point)) for f in functions]
+        except (NotDecided, Undefined, Unmodelled):
+            continue
+        beyond = next(((f, ball) for f, ball in balls if not ball.imag.contains(0)), None)
+        real = real or beyond is None
+        if beyond is not None and example is None:
+            names = {s.name: str(number) for s, number in point.items()}
+            example = beyond[0], Counterexample(names, shown(beyond[1]), "a real number", 8)
+    return real, example
+
+
+def _is_real_further_on(functions: Sequence[Expr], bounds: Sequence[Boolean], domain: Domain) -> bool:
+    """Whether functions may be real at a point where one symbol after another was moved to where bounds hold."""
+    symbols = {s for f in functions for s in free_symbols(f)}
+    for point in domain.points(symbols, MOVED):
+        for s in sorted(symbols, key=str):
+            moved = dict(point)
+            for bound in bounds:
+                gap = substitute(
+                    cast("Expr", bound.gts - bound.lts), {z: n for z, n in moved.items() if z != s}
+                )
+                slope = gap.diff(s)
+                if slope.is_Rational and slope != 0 and not conditions_hold([bound], moved):
+                    moved[s] = cast("Rational", substitute((1 - gap) / slope, {s: sp.S.Zero}))
+            if domain.admits(moved) and all(_is_real_at(f, moved) for f in functions):
+                return True
+    return False
 
 
 def _without_turns(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time as clock
 from dataclasses import dataclass
 from itertools import combinations, product
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
@@ -17,6 +17,7 @@ from canon.mechanics.algebra.constraint_manifold import (
     Branch,
     EmptyDomainError,
     check_not_empty,
+    check_whole,
     inhabited,
     on_manifold,
 )
@@ -29,6 +30,8 @@ from canon.proof.domain.verdict import Status, Undecided, Verdict, all_hold
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
+
+    from sympy.logic.boolalg import Boolean
 
     from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 
@@ -182,13 +185,19 @@ class ConstraintSystem:
 
     @cached_property
     def at_rest_in_time(self) -> Verdict:
-        """Whether what is allowed does not depend on the time explicitly."""
-        verdict = self.all_vanish(
-            "free of the time", [g.diff(self.t) for g in (*self.positions, *self.rates)]
-        )
+        """Whether what is allowed does not depend on the time explicitly.
+
+        What is allowed at one instant is allowed at every other: constraints are put at another instant t₁, and must
+        vanish where they do at t, for all t and t₁ of the domain. Derivatives by t would not do: that of sign t is
+        zero on both sides of the step.
+        """
+        later, v = self._later, [velocity(x) for x in self.q]
+        check_whole([g for g in self.velocities if g.has(*PIECED)], v, self.domain)
+        changing = [g for g in (*self.positions, *self.rates) if g.has(self.t)]
+        verdict = self.all_vanish("free of the time", [exchanged(g, later) for g in changing], self._at_both)
         moving = [h for h in self.inequalities if h.has(self.t)]
-        if verdict.holds and (self.positions or self.velocities):
-            self._check_regular()
+        if verdict.fails and self.positions and self.velocities:
+            self._check_regular()  # or more velocities were looked at than are allowed
         if not verdict.holds or not moving:
             return verdict
         sides = [side for h in moving for side in self._moves(h)]
@@ -196,16 +205,38 @@ class ConstraintSystem:
             return next(side for side in sides if side.fails)
         raise Undecided("whether the inequality depends on the time was not decided; narrow the domain")
 
+    @cached_property
+    def _later(self) -> dict[Symbol, Symbol]:
+        """Another instant in place of the time."""
+        return {self.t: sp.Dummy("t1", **self.t.assumptions0)}
+
+    @property
+    def _at_both(self) -> tuple[Boolean, ...]:
+        """What the domain says of the other instant: all other symbols are in it at both."""
+        return tuple(
+            cast("Boolean", c.xreplace(self._later)) for c in self.domain.conditions if c.has(self.t)
+        )
+
     def _moves(self, h: Expr) -> Iterator[Verdict]:
-        """Yield whether ∂h/∂t vanishes at the edge h = 0, as far as the other inequalities leave it bare."""
+        """Yield whether h stays at zero on its edge, as far as the other inequalities leave it bare.
+
+        Where ∂h/∂t does not vanish at the edge, h has another sign just before than just after; where h < 0 at
+        another instant, the point is not allowed then, as it is on the edge.
+        """
         others = [sp.Gt(other, 0) for other in self.inequalities if other != h]
         try:
             seen = Domain((*self.domain.conditions, *(c for c in others if c != sp.true)), self.domain.box)
             edge = on_manifold([*self.positions, h], seen, keep=(self.t,))
         except EmptyDomainError:
             return
+        then = exchanged(h, self._later)
         for b in edge:
             yield self._vanish("∂/∂t", [substitute(h.diff(self.t), b.values)], b.domain)
+            there = substitute(then, b.values)
+            left = sp.Lt(there, 0)
+            if left not in (sp.true, sp.false):
+                forbidden = _narrowed(b, (*self._at_both, left))
+                yield self._vanish("what is allowed at another time", [there], forbidden)
 
     def _check_regular(self) -> None:
         """Refuse constraints such as (x − t)² = 0, whose derivatives vanish where they hold."""
@@ -220,13 +251,18 @@ class ConstraintSystem:
                         "write each without a power, as x − t = 0 instead of (x − t)² = 0"
                     )
 
-    def all_vanish(self, name: str, expressions: Sequence[Expr]) -> Verdict:
-        """Tell whether expressions vanish wherever the constraints hold."""
+    def all_vanish(self, name: str, expressions: Sequence[Expr], besides: Sequence[Boolean] = ()) -> Verdict:
+        """Tell whether expressions vanish wherever the constraints, and some conditions besides, hold."""
         wanted = [e for e in expressions if e != 0]
         if not wanted:
             return Verdict(Status.HOLDS, name, "structure")
         verdicts = (
-            self._vanish(name, [substitute(e, b.values) for e in wanted], b.domain) for b in self.branches
+            self._vanish(
+                name,
+                [substitute(e, b.values) for e in wanted],
+                _narrowed(b, besides),
+            )
+            for b in self.branches
         )
         return all_hold(verdicts, name)
 
@@ -254,6 +290,12 @@ class ConstraintSystem:
                 "eliminate positions with those that hold no velocities"
             )
         return len(self.forms.holonomic_part.forms)
+
+
+def _narrowed(branch: Branch, conditions: Sequence[Boolean]) -> Domain:
+    """Return the domain of a branch with more conditions, in the symbols that are free there."""
+    here = (cast("Boolean", c.subs(list(branch.values.items()), simultaneous=True)) for c in conditions)
+    return Domain((*branch.domain.conditions, *(c for c in here if c != sp.true)), branch.domain.box)
 
 
 def is_integrable(constrained: ConstrainedLagrangian, domain: Domain | None = None) -> Verdict:

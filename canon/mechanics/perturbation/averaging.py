@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass, field
 from math import comb, factorial
 from typing import TYPE_CHECKING, Any, cast
@@ -20,11 +21,18 @@ from canon.mechanics.perturbation.fourier_series import (
 from canon.mechanics.perturbation.lie_series import lie_deprit, powers_of
 from canon.mechanics.perturbation.normal_form_step import Module
 from canon.mechanics.perturbation.secular.von_zeipel import von_zeipel_function
+from canon.proof.analytic import is_analytic, proved_sign
+from canon.proof.domain.domain import EVERYWHERE, Domain, as_domain
+from canon.proof.domain.pinched_bounds import with_pinched_bounds
+from canon.proof.domain.relations import linear, parts_of
 from canon.proof.domain.verdict import Status, Verdict, all_hold
+from canon.proof.rungs.ladder import is_empty
 from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+
+    from sympy.logic.boolalg import Boolean
 
     from canon.mechanics.canonical.generating_function import GeneratingFunction
     from canon.mechanics.perturbation.fourier_series import Harmonic, Series
@@ -73,6 +81,8 @@ class Averaged:
         W₁, W₂ …, where W = Σ Wₙ₊₁ εⁿ/n! is Deprit's.
     divisors
         The k·ω that were divided by, by k.
+    domain
+        Where it is meant: what ties frequencies there makes them resonant.
     """
 
     source: Hamiltonian
@@ -84,6 +94,7 @@ class Averaged:
     terms: tuple[Expr, ...]
     generators: tuple[Expr, ...]
     divisors: Mapping[Harmonic, Expr] = field(repr=False)
+    domain: Domain = field(default=EVERYWHERE, repr=False)
 
     @cached_property
     def K(self) -> Expr:
@@ -127,12 +138,12 @@ class Averaged:
         module = None if self.resonances is None else Module(self.resonances)
         for n, term in enumerate(self.terms):
             for k in fourier_series(term, self.angles):
-                if not _stays(k, _divisor(k, frequencies), module):
+                if not _stays(k, _divisor(k, frequencies, self.domain), module):
                     why = f"the coefficient of {self.small}**{n} still has the fast term of k = {k}"
                     return Verdict(Status.FAILS, question, "exact", term, feedback=why)
         left = cast("Expr", sp.expand(self.to_new(self.source.H) - self.K))
         each = (
-            vanishes(cast("Expr", left.coeff(self.small, n)), budget=budget / (self.order + 1)).about(
+            vanishes(cast("Expr", left.coeff(self.small, n)), self.domain, budget / (self.order + 1)).about(
                 f"the coefficient of {self.small}**{n} is that of K"
             )
             for n in range(self.order + 1)
@@ -146,6 +157,7 @@ def average(
     order: int,
     small: Symbol,
     resonances: Sequence[Sequence[int]] | None = None,
+    domain: Domain | None = None,
 ) -> Averaged:
     """Return H averaged over fast angles to an order in ε, by Deprit's method.
 
@@ -166,12 +178,14 @@ def average(
         ε.
     resonances
         Vectors k whose span stays, with the angles k·θ slow; without them only terms with k·ω = 0 identically stay.
+    domain
+        What holds of the parameters: with ω₁ = ω₂ the term of θ₁ − θ₂ stays.
 
     Raises
     ------
     AveragingError
-        Where H₀ depends on more than the actions, or a divisor k·ω is zero for a k outside ``resonances``; ``reached``
-        keeps what was found.
+        Where H₀ depends on more than the actions, a divisor k·ω is zero for a k outside ``resonances``, or it was not
+        decided whether one vanishes on the domain; ``reached`` keeps what was found.
     NoFourierSeriesError
         Where H is no trigonometric polynomial in the angles.
 
@@ -192,6 +206,7 @@ def average(
     frequencies = [parts[0].diff(action) for action in actions]
     named = None if resonances is None else tuple(tuple(int(k) for k in v) for v in resonances)
     module = None if named is None else Module(named)
+    domain = with_pinched_bounds(as_domain(domain))
     column = [fourier_series(part * factorial(n), fast) for n, part in enumerate(parts)]
     divisors: dict[Harmonic, Expr] = {}
     terms, generators = [parts[0]], list[Expr]()
@@ -201,11 +216,13 @@ def average(
         return fourier_bracket(f, g, actions, slow_q, slow_p)
 
     def result() -> Averaged:
-        return Averaged(H, fast, actions, small, len(W), named, tuple(terms), tuple(generators), divisors)
+        return Averaged(
+            H, fast, actions, small, len(W), named, tuple(terms), tuple(generators), divisors, domain
+        )
 
     for n in range(1, order + 1):
         known = _diagonal(column, W, n, bracket)
-        removed = _divisors(known, frequencies, module)
+        removed = _divisors(known, frequencies, module, domain)
         _check_nonzero(removed, result())
         divisors |= removed
         W.append({k: known[k] / (sp.I * divisor) for k, divisor in removed.items()})
@@ -234,9 +251,11 @@ def _check_of_actions_alone(H0: Expr, others: set[Symbol], small: Symbol) -> Non
         )
 
 
-def _divisors(series: Series, frequencies: Sequence[Expr], module: Module | None) -> dict[Harmonic, Expr]:
+def _divisors(
+    series: Series, frequencies: Sequence[Expr], module: Module | None, domain: Domain
+) -> dict[Harmonic, Expr]:
     """Return k·ω of the terms that the average is to lose."""
-    found = {k: _divisor(k, frequencies) for k in series}
+    found = {k: _divisor(k, frequencies, domain) for k in series if any(k)}
     return {k: divisor for k, divisor in found.items() if not _stays(k, divisor, module)}
 
 
@@ -256,11 +275,49 @@ def _stays(k: Harmonic, divisor: Expr, module: Module | None) -> bool:
     return not any(k) or (divisor == 0 if module is None else k in module)
 
 
-def _divisor(k: Harmonic, frequencies: Sequence[Expr]) -> Expr:
-    """Return k·ω, 0 where it is proved to vanish, as √(3 + 2√2) − (1 + √2) does."""
+def _divisor(k: Harmonic, frequencies: Sequence[Expr], domain: Domain) -> Expr:
+    """Return k·ω, 0 where it is proved to vanish on the domain, as √(3 + 2√2) − (1 + √2) does everywhere.
+
+    What is not 0 is divided by. It need not vanish nowhere, as results are meant for parameters in general, but must
+    not vanish on a part of the domain that is as large as the domain.
+
+    Raises
+    ------
+    AveragingError
+        Where that was not decided.
+    """
     factored: Any = sp.factor(sp.Add(*(j * omega for j, omega in zip(k, frequencies, strict=True))))
-    rational = not factored.has(sp.Function) and all(e.exp.is_Integer for e in factored.atoms(sp.Pow))
-    return factored if rational or not vanishes(factored, budget=ZERO_SECONDS).holds else sp.S.Zero
+    if factored.is_number or not domain.conditions:
+        rational = not factored.has(sp.Function) and all(e.exp.is_Integer for e in factored.atoms(sp.Pow))
+        if rational:
+            return factored
+    verdict = vanishes(factored, domain, ZERO_SECONDS)
+    if verdict.holds:
+        return sp.S.Zero
+    if not (verdict.fails and _is_thick(factored, domain)) and not _vanishes_nowhere(factored, domain):
+        raise AveragingError(
+            f"whether {factored} vanishes, by which the term of k = {k} is divided, was not decided on the domain; "
+            "write what it says of the frequencies into H"
+        )
+    return factored
+
+
+def _is_thick(divisor: Expr, domain: Domain) -> bool:
+    """Tell whether the zeros of what is not zero at one point of the domain are certainly thin in it.
+
+    So it is for a power of a function analytic on a connected set that holds the domain, and for products of such
+    powers, where the domain is open in a convex set: one that strict and linear conditions make. Thin sheets, as
+    (a − b)(a − 2b) = 0 and (a − b)² (a − 2b)² ≤ 0 leave them, may lie among the zeros.
+    """
+    thin = (sp.Eq, sp.Ge, sp.Le)
+    sheets = [c for c in parts_of(domain.conditions) if isinstance(c, thin) and not linear(c)]
+    bases = [factor.as_base_exp()[0] for factor in sp.Mul.make_args(divisor)]
+    return not sheets and is_analytic(bases, domain)
+
+
+def _vanishes_nowhere(divisor: Expr, domain: Domain) -> bool:
+    zeros = Domain((*domain.conditions, cast("Boolean", sp.Eq(divisor, 0))), domain.box)
+    return proved_sign(divisor, domain) in ("+", "-") or is_empty(zeros, time.monotonic() + ZERO_SECONDS)
 
 
 def _diagonal(

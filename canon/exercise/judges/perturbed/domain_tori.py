@@ -6,7 +6,8 @@ A formula holds for motions of one kind. Where the domain has rotations in both 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+import time
+from dataclasses import dataclass, field
 from functools import lru_cache
 from itertools import islice
 from typing import TYPE_CHECKING, cast
@@ -15,13 +16,14 @@ import sympy as sp
 from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
-from canon.exercise.question.deadline import Deadline
+from canon.exercise.question.deadline import PROOF_SECONDS, Deadline
 from canon.frozen_mapping import FrozenMapping
-from canon.mechanics.algebra.substitution import exchanged, substitute
+from canon.mechanics.algebra.substitution import exchanged, substitute, symbols_of
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.integrable.actions import ActionVariables, action_variables
 from canon.mechanics.integrable.ball_function import NotHolomorphicError
 from canon.mechanics.integrable.closed_form.actions_in_closed_form import closed_actions, lies_in
+from canon.mechanics.integrable.closed_form.validity import Validity, validity
 from canon.mechanics.integrable.complete_integral import CompleteIntegral, hamilton_jacobi
 from canon.mechanics.integrable.cycles import CycleKind, ball_of
 from canon.mechanics.integrable.separated_momenta import NotSeparatedError
@@ -29,7 +31,9 @@ from canon.mechanics.integrable.turning_points import NoCycleError
 from canon.proof.analytic import proved_sign
 from canon.proof.domain.balls import precision
 from canon.proof.domain.domain import Domain
-from canon.proof.domain.verdict import Undecided
+from canon.proof.domain.relations import parts_of
+from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict
+from canon.proof.rungs.ladder import is_empty
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -78,6 +82,31 @@ class Tori:
     tori: tuple[ActionVariables, ...]
     J: tuple[Expr | None, ...]
     back: Mapping[Expr, Expr]
+    valid: Validity = field(default_factory=lambda: Validity((), ()))
+
+    def where_valid(self, domain: Domain) -> Domain:
+        """Return the part of a domain that has bounded motions of the kind of the formulas.
+
+        What a formula gives for other motions is no action, whichever way it is written.
+        """
+        open_ = [f for f in map(self.of_state, self.valid.bounded) if not is_positive_there(f, domain)]
+        bounded = Domain((*domain.conditions, *(sp.Gt(f, 0) for f in open_)), domain.box)
+        kinds = [f for f in map(self.of_state, self.valid.kind) if not is_positive_there(f, bounded)]
+        return Domain((*bounded.conditions, *(sp.Gt(f, 0) for f in kinds)), domain.box)
+
+    def of_one_kind(self, domain: Domain) -> Verdict:
+        """Tell whether it is proved that all bounded motions in a domain are of the kind of the formulas.
+
+        Some tori do not show it: a narrow band of motions on the other side of a separatrix is easily missed.
+        """
+        question = "the motions in the domain are of one kind"
+        bounded = (sp.Gt(f, 0) for f in map(self.of_state, self.valid.bounded))
+        there = Domain((*domain.conditions, *bounded), domain.box)
+        open_ = [f for f in map(self.of_state, self.valid.kind) if not is_positive_there(f, there)]
+        if not open_:
+            return Verdict(Status.HOLDS, question, "exact")
+        why = f"the domain may have motions of another kind: narrow it by {open_[0]} > 0"
+        return Verdict(Status.UNDECIDED, question, evidence=(Evidence("open", why),), feedback=why)
 
     def along_the_motion(
         self, claimed: Sequence[Expr], right: Sequence[Expr], balls: Sequence[arb], domain: Domain
@@ -148,6 +177,31 @@ class Tori:
                 f"{len(self.tori)} points has nothing against the claim, which is no proof"
             )
         return tuple(found)
+
+
+def is_positive_there(f: Expr, domain: Domain) -> bool:
+    """Tell whether it is proved that a function is positive, or zero on a separatrix at most, all over a domain.
+
+    What is k g + r with g > 0 said by the domain, k > 0 and r ≥ 0, is positive too.
+
+    Examples
+    --------
+    >>> q, p = sp.symbols("q p", real=True)
+    >>> H = p**2 / 2 - sp.cos(q)
+    >>> [is_positive_there(2 - 2 * H, Domain((H < bound,))) for bound in (sp.Rational(1, 2), 1, 2)]
+    [True, True, False]
+    """
+    if proved_sign(f, domain).endswith("+"):
+        return True
+    for c in parts_of(domain.conditions):
+        if isinstance(c, sp.Gt | sp.Lt | sp.Ge | sp.Le):
+            gap = cast("Expr", c.gts - c.lts)
+            for s in symbols_of(gap):
+                k = sp.cancel(f.diff(s) / gap.diff(s)) if gap.has(s) and gap.diff(s) != 0 else sp.S.Zero
+                if k.is_positive and proved_sign(sp.expand(f - k * gap), domain).endswith(("+", "0")):
+                    return True
+    elsewhere = Domain((*domain.conditions, cast("Boolean", sp.Lt(f, 0))), domain.box)
+    return is_empty(elsewhere, time.monotonic() + PROOF_SECONDS)
 
 
 def by_senses(H: Hamiltonian, reading: Reading) -> list[tuple[Domain, Tori]]:
@@ -244,7 +298,10 @@ def _kept_tori(
     if not all(_lie_in(known, torus) for torus in (*found, *compared)):
         raise Undecided("the actions are other functions in parts of the domain; narrow it")
     back = {symbol: f for f, symbol in frozen.items()}
-    return Tori(integral, tuple(found), tuple(J if J is None else exchanged(J, back) for J in known), back)
+    valid = validity(found[0])
+    sides = (tuple(exchanged(f, back) for f in side) for side in (valid.bounded, valid.kind))
+    whole = tuple(J if J is None else exchanged(J, back) for J in known)
+    return Tori(integral, tuple(found), whole, back, Validity(*sides))
 
 
 def _check_turns(torus: ActionVariables) -> None:

@@ -171,13 +171,18 @@ def _has_period(H: Expr, x: Symbol, reading: Reading) -> bool:
 
 
 def averaged_hamiltonian(reading: Reading) -> Iterator[Question]:
-    """K is the average of H over fast angles to an order, in the new variables under the names of the old ones."""
+    """K is the average of H over fast angles to an order, in the new variables under the names of the old ones.
+
+    Which terms are in resonance the domain decides too.
+    """
     q, p = reading.phase_space("q", "p")
     small, order, t = _small(reading), _order(reading), reading.time
     H, fast = _autonomous(reading), reading.subset("angles", "q")
     expanded = _coefficients(reading, H, small, order)
     try:
-        averaged = average(Hamiltonian(_sum(expanded, small), q, p, t), fast, order, small)
+        averaged = average(
+            Hamiltonian(_sum(expanded, small), q, p, t), fast, order, small, domain=reading.domain
+        )
     except (AveragingError, NoFourierSeriesError) as reason:
         raise Undecided(f"the average was not found: {reason}") from None
     unique = _unique_orders(averaged, reading.expression("K"), order)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 
 from canon.mechanics.algebra.substitution import substitute
+from canon.proof.domain.pinched_bounds import with_pinched_bounds
 from canon.proof.domain.relations import parts_of
 from canon.proof.domain.verdict import Undecided
 from canon.proof.trees.sympy_types import free_symbols
@@ -30,7 +31,7 @@ def with_tied_values(reading: Reading, energy: Expr) -> Expr:
     state = {*reading.symbols("q"), *reading.symbols("p")}
     ties = [
         cast("Expr", tie.lhs) - cast("Expr", tie.rhs)
-        for tie in parts_of(reading.domain.conditions)
+        for tie in parts_of(with_pinched_bounds(reading.domain).conditions)
         if isinstance(tie, sp.Eq) and not free_symbols(tie) & state
     ]
     while ties:

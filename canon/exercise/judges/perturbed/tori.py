@@ -9,6 +9,7 @@ itself. Where a coordinate falls, its action is counted along it, and negative, 
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -20,13 +21,13 @@ from canon.exercise.judges.canonical import canonical_parts
 from canon.exercise.judges.perturbed.domain_tori import BITS, DIGITS, by_senses, falls, may_be
 from canon.exercise.question.continuous_answer import is_continuous
 from canon.exercise.question.deadline import PROOF_SECONDS
-from canon.exercise.question.question import Part, Question, Same, Stated, fails, wrong_variables
+from canon.exercise.question.question import Part, Question, Same, Stated, wrong_variables
 from canon.expression.symbols.user_input import counted
 from canon.frozen_mapping import FrozenMapping
 from canon.mechanics.algebra.constraint_manifold import transported
+from canon.mechanics.algebra.possible_motion import real_somewhere
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
-from canon.mechanics.integrable.cycles import ball_of
 from canon.proof.continuity.turns_of_angles import continuity_but_for_turns
 from canon.proof.domain.balls import precision
 from canon.proof.domain.domain import EVERYWHERE, Domain
@@ -34,7 +35,7 @@ from canon.proof.domain.verdict import Counterexample, Evidence, Status, Undecid
 from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from flint import arb
 
@@ -45,8 +46,6 @@ __all__ = ["action_angle", "frequency", "slow_invariant"]
 
 POLES = (sp.tan, sp.cot, sp.sec, sp.csc)
 """Functions of an angle across whose poles a map may jump."""
-REAL_POINTS = 24
-"""Points at one of which a map should be real."""
 
 
 def action_angle(reading: Reading) -> Iterator[Question]:
@@ -65,7 +64,8 @@ def action_angle(reading: Reading) -> Iterator[Question]:
                 return
         right = tori.along_the_motion(of_state, [*map(tori.of_state, tori.known())], tori.tori[0].J, domain)
         parts = _components("the action", "J", H.q, claimed, right, at_energy)
-        yield Same(parts, domain, tori.shown, _whole_loop)
+        yield Same(parts, tori.where_valid(domain), tori.shown, _whole_loop)
+        yield tori.of_one_kind(domain)
 
 
 def _components(
@@ -120,17 +120,19 @@ def _map_to_actions(reading: Reading, H: Hamiltonian) -> Iterator[Question]:
     yield from _is_one_map(dict(zip(written, images, strict=True)), new_q, (*q, *p), whole)
     said = "the new momenta are not the actions (1/2π) ∮ p dq: the angles do not grow by 2π in a turn"
     for there, tori in by_senses(H, reading):
-        domain = transported(there, seen) if seen else there
+        valid = tori.where_valid(there)
+        domain = transported(valid, seen) if seen else valid
         right = [substitute(tori.of_state(J), seen) for J in tori.known()]
         yield Same(_up_to_units(H.q, momenta, right, (*q, *p), domain), domain, tori.shown, lambda _: said)
+        yield tori.of_one_kind(there)
 
 
 def _is_one_map(
     images: Mapping[str, Expr], angles: Sequence[Symbol], state: Sequence[Symbol], domain: Domain
 ) -> Iterator[Question]:
     """Ask whether a map is real, and continuous but for the turns of angles: brackets show neither."""
-    if not _is_real_somewhere(images.values(), domain):
-        yield fails("the map is real", "the map is imaginary all over the domain")
+    real = real_somewhere([*images.values()], domain, "the map is real")
+    yield replace(real, feedback="the map is imaginary all over the domain") if real.fails else real
     for name, f in images.items():
         if name in {s.name for s in angles}:
             yield _winds(name, f, state, domain)
@@ -152,17 +154,6 @@ def _winds(name: str, f: Expr, state: Sequence[Symbol], domain: Domain) -> Verdi
     if any(wave.fails for wave in waves):
         return next(wave for wave in waves if wave.fails)
     return all_hold(waves)
-
-
-def _is_real_somewhere(images: Iterable[Expr], domain: Domain) -> bool:
-    """Tell whether all images may be real at one of some points of the domain; so they are where none was found."""
-    images = [*images]
-    symbols = {s for f in images for s in f.free_symbols if isinstance(s, Symbol)}
-    points = [*domain.points(symbols, REAL_POINTS)]
-    with precision(BITS):
-        return not points or any(
-            all(ball_of(substitute(f, point)).imag.contains(0) for f in images) for point in points
-        )
 
 
 def _up_to_units(
@@ -226,7 +217,8 @@ def frequency(reading: Reading) -> Iterator[Question]:
         )
         answer = tuple(substitute(f, {energy: Symbol("E", real=True)}) for f in omega)
         parts = _components("the frequency", "omega", H.q, claimed, right, through)
-        yield Same(parts, domain, lambda answer=answer: answer, _turns_alone)
+        yield Same(parts, tori.where_valid(domain), lambda answer=answer: answer, _turns_alone)
+        yield tori.of_one_kind(domain)
 
 
 def slow_invariant(reading: Reading, I: Expr, tau: Symbol, H: Expr, H0: Expr) -> Iterator[Question]:
@@ -254,7 +246,8 @@ def slow_invariant(reading: Reading, I: Expr, tau: Symbol, H: Expr, H0: Expr) ->
             Part(f"∂(I, J)/∂({a}, {b})", I.diff(a) * J.diff(b) - I.diff(b) * J.diff(a))
             for a, b in combinations((x, y, tau), 2)
         )
-        yield Same(parts, domain, lambda J=J: J, lambda _: said)
+        yield Same(parts, tori.where_valid(domain), lambda J=J: J, lambda _: said)
+        yield tori.of_one_kind(domain)
 
 
 def _hamiltonian(reading: Reading) -> Hamiltonian:
