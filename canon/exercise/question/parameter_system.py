@@ -22,6 +22,7 @@ from canon.proof.analytic import proved_sign
 from canon.proof.continuity.smooth import PIECED
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.verdict import Undecided
+from canon.proof.trees.affine_form import is_affine
 from canon.proof.trees.polynomial import polynomial_factors
 from canon.proof.trees.sympy_types import arguments, rational
 from canon.proof.vanish import vanishes
@@ -182,7 +183,7 @@ def _of_factor(factor: Expr, free: Sequence[Symbol], domain: Domain) -> list[Fam
     unknowns = [s for s in free if factor.has(s)]
     for s in unknowns:
         slope = factor.diff(s)
-        if slope.has(s):
+        if slope.has(s) or not is_affine(factor, [s]):
             continue
         regular: Family = {s: sp.cancel(-exchanged(factor, {s: sp.S.Zero}) / slope)}
         if not slope.has(*free):
