@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from canon.proof.domain.domain import Domain
 
-__all__ = ["Jump", "continued", "find_jump", "shown"]
+__all__ = ["Jump", "brackets", "continued", "find_jump", "is_edge", "jump_between", "shown"]
 
 BITS = 192
 NARROW = 60
@@ -86,18 +86,62 @@ def find_jump(f: Expr, cut: Cut, variables: Sequence[Symbol], domain: Domain, de
     ('0', '3.1415')
     """
     sides = [continued(f, cut.gap, variables, up=up) for up in (True, False)]
-    symbols = free_symbols(f) | free_symbols(cut.gap)
+    return jump_between(sides, cut.gap, variables, domain, deadline)
+
+
+def jump_between(
+    sides: Sequence[Expr],
+    gap: Expr,
+    variables: Sequence[Symbol],
+    domain: Domain,
+    deadline: float,
+    positive: Sequence[Expr] = (),
+) -> Jump | None:
+    """Return a certified jump between two functions at a surface, the first holding where the gap is positive.
+
+    Both are analytic across the surface wherever all of ``positive`` are so.
+    """
+    symbols = {s for f in (*sides, gap, *positive) for s in free_symbols(f)}
     for point in domain.points(symbols, POINTS, deadline=deadline):
-        for s in sorted(free_symbols(cut.gap) & set(variables), key=str):
-            if s.is_integer:
-                continue
-            for bracket in _brackets(cut.gap, s, point):
+        for s in sorted(free_symbols(gap) & set(variables), key=str):
+            for bracket in brackets(gap, s, point):
                 if time.monotonic() > deadline:
                     return None
-                found = _jump_in(bracket, s, point, cut.gap, sides, domain)
+                found = _jump_in(bracket, s, point, gap, sides, domain, positive)
                 if found is not None:
                     return found
     return None
+
+
+def is_edge(
+    f: Expr, gap: Expr, variables: Sequence[Symbol], domain: Domain, deadline: float
+) -> bool:
+    """Tell whether a function is certainly not real on one side of a surface, at each place where it was looked at.
+
+    It is analytic off the surfaces where it branches, so that it is not real in the parts that hold these points; what is
+    claimed is claimed where it is real, and has one side only there.
+    """
+    seen = 0
+    for point in domain.points(free_symbols(f) | free_symbols(gap), POINTS, deadline=deadline):
+        for s in sorted(free_symbols(gap) & set(variables), key=str):
+            for ends in brackets(gap, s, point):
+                if time.monotonic() > deadline:
+                    return False
+                at_ends = [{**point, s: end} for end in ends]
+                if not all(domain.admits(end) for end in at_ends):
+                    continue
+                if all(_may_be_real(f, end) for end in at_ends):
+                    return False
+                seen += 1
+    return seen > 0
+
+
+def _may_be_real(f: Expr, point: Mapping[Symbol, sp.Rational]) -> bool:
+    with precision(BITS):
+        try:
+            return bool(value(f, point).imag.contains(0))
+        except _NO_VALUE:
+            return True
 
 
 def continued(f: Expr, gap: Expr, variables: Sequence[Symbol], *, up: bool) -> Expr:
@@ -121,10 +165,12 @@ def continued(f: Expr, gap: Expr, variables: Sequence[Symbol], *, up: bool) -> E
     return sp.cancel(f) if f.is_rational_function() else f
 
 
-def _brackets(
+def brackets(
     gap: Expr, s: Symbol, point: Mapping[Symbol, sp.Rational]
 ) -> Iterator[tuple[sp.Rational, sp.Rational]]:
     """Yield short intervals at whose ends the gap has different signs, the other symbols having their values."""
+    if s.is_integer:
+        return
     others = {x: number for x, number in point.items() if x != s}
     here = cast("Expr", gap.xreplace(others))
     for root in _roots(here, s):
@@ -194,6 +240,7 @@ def _jump_in(
     gap: Expr,
     sides: Sequence[Expr],
     domain: Domain,
+    positive: Sequence[Expr] = (),
 ) -> Jump | None:
     others = {x: number for x, number in point.items() if x != s}
     with precision(BITS):
@@ -204,6 +251,7 @@ def _jump_in(
                 return None
             slope = value(off_the_kinks(gap.diff(s)), others, memo)
             clear = all(_clear(e, s, others, memo) for e in (gap, *sides))
+            clear = clear and all(_is_positive(e, others, memo) for e in positive)
             if slope.contains(0) or not clear:
                 return None
             above, below = (value(side, others, memo) for side in sides)
@@ -214,6 +262,11 @@ def _jump_in(
         before, after = (below, above) if slope.real > 0 else (above, below)
         where = {x.name: str(number) for x, number in others.items()} | {s.name: _place(*bracket)}
         return Jump(where, s, shown(before), shown(after))
+
+
+def _is_positive(e: Expr, others: Mapping[Symbol, sp.Rational], memo: dict[sp.Basic, acb]) -> bool:
+    found = value(e, others, memo)
+    return bool(found.imag.is_zero() and found.real > 0)
 
 
 def _place(a: sp.Rational, b: sp.Rational) -> str:
