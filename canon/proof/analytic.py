@@ -47,8 +47,8 @@ def is_analytic(exprs: Iterable[Expr], domain: Domain) -> bool:
     where the radicand is proved positive there, square roots also where it is a nonnegative polynomial
     without square factors, whose zeros then have codimension 2 and cut nothing in two. What has more than one
     branch may not be taken of poles, which cut a line in two: atan(1/x) jumps where 1/x has one, and no less so where x
-    is declared nonzero: in the convex set such a symbol is any real number. Nonlinear equalities leave several sheets and
-    are declined.
+    is declared nonzero: in the convex set such a symbol is any real number. Nonlinear equalities leave several sheets
+    and are declined.
 
     Examples
     --------

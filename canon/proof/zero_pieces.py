@@ -17,7 +17,7 @@ from canon.proof.domain.domain import Domain
 from canon.proof.domain.limits import QUICK
 from canon.proof.kinks import WITH_PIECES, is_thin, variants_of
 from canon.proof.rungs.cases import cases
-from canon.proof.rungs.ladder import REFUSALS, prove_zero
+from canon.proof.rungs.ladder import REFUSALS, is_empty, prove_zero
 from canon.proof.trees.anatomy import anatomy
 from canon.proof.trees.sympy_types import arguments
 
@@ -34,25 +34,29 @@ BITS = 128
 
 
 def zero_piece(f: Expr, domain: Domain, budget: float = 1.0) -> str | None:
-    """Return an open part of the domain on which f is proved to vanish, "" where there is none, None where that is open.
+    """Return an open part of the domain on which f is proved to vanish, "" where it has none, None where that is open.
 
-    There is none where f is proved to have one sign, or where each of its factors, with every choice of pieces and of the
-    signs of its roots, is analytic on a connected set that holds the domain and not zero at a point: near every point
-    off the kinks f is one of these choices.
+    There is none where f is proved to have one sign, or where each of its factors, with every choice of pieces and of
+    the signs of its roots, is analytic on a connected set that holds the domain and not zero at a point: near every
+    point off the kinks f is one of these choices. The same may be shown of f on each of the open parts that its kinks
+    leave.
 
     Examples
     --------
     >>> x = sp.Symbol("x", real=True)
-    >>> zero_piece(x + abs(x), Domain()), zero_piece(x + 2 * abs(x), Domain()), zero_piece(1 + sp.sign(x), Domain((x > 0,)))
+    >>> zero_piece(x + abs(x), Domain()), zero_piece(x + abs(x), Domain((x > 0,))), zero_piece(x + 2 * abs(x), Domain())
     ('x < 0', '', '')
     """
     deadline = time.monotonic() + budget
     if all(_vanishes_thinly(factor, domain) for factor in _factors(f)):
         return ""
-    for part, where in _pieces(f, domain, deadline):
-        if part is not None and prove_zero(part, where, deadline, QUICK).holds and _is_met(part, where):
+    found = _pieces(f, domain, deadline)
+    for part, where in found or ():
+        if prove_zero(part, where, deadline, QUICK).holds and _is_met(part, where):
             said = [c for c in where.conditions if c not in domain.conditions]
             return ", ".join(map(str, said)) or "everywhere"
+    if found and all(_vanishes_thinly(part, where) or is_empty(where, deadline) for part, where in found):
+        return ""
     return None
 
 
@@ -72,7 +76,8 @@ def has_hidden_pieces(f: Expr, domain: Domain) -> bool:
     ]
     poles = {e.base for e in anatomy(branched).of(sp.Pow) if not e.exp.is_nonnegative}
     return any(
-        base.free_symbols and not (base.is_positive or base.is_negative or proved_sign(base, domain) in ("+", "-"))
+        base.free_symbols
+        and not (base.is_positive or base.is_negative or proved_sign(base, domain) in ("+", "-"))
         for base in poles
     )
 
@@ -92,29 +97,42 @@ def _vanishes_thinly(f: Expr, domain: Domain) -> bool:
     return variants is not None and all(g.is_nonzero or is_thin(g, domain) is True for g in variants)
 
 
-def _pieces(f: Expr, domain: Domain, deadline: float) -> Iterator[tuple[Expr | None, Domain]]:
-    """Yield a function without its pieces, and the open part of the domain where it is so, cut by cut."""
-    left: list[tuple[Expr | None, Domain]] = [(f, domain)]
+def _pieces(f: Expr, domain: Domain, deadline: float) -> list[tuple[Expr, Domain]] | None:
+    """Return the open parts that cover a domain but for thin sets, and what a function is on each, without pieces.
+
+    Parts where it has no value are left out. None where not all of them are known.
+    """
+    done: list[tuple[Expr, Domain]] = []
+    left: list[tuple[Expr, Domain]] = [(f, domain)]
     for _ in range(MOST_PIECES):
-        if not left or time.monotonic() > deadline:
-            return
+        if not left:
+            return done
         part, where = left.pop()
-        if part is None or not part.has(*WITH_PIECES):
-            yield part, where
+        if not part.has(*WITH_PIECES):
+            done.append((part, where))
             continue
         try:
-            found = cases(part, where) or []
+            found = cases(part, where) if time.monotonic() < deadline else None
         except REFUSALS:
-            continue
-        left += [(case.expr, inner) for case in found if (inner := _open(case.domain)) is not None]
+            found = None
+        if found is None or any(_is_bound_otherwise(c) for case in found for c in case.domain.conditions):
+            return None
+        for case in found:
+            inner = _open(case.domain)
+            if case.expr is not None and inner is not None:
+                left.append((case.expr, inner))
+    return None
+
+
+def _is_bound_otherwise(condition: sp.Basic) -> bool:
+    return not isinstance(condition, Relational) and condition not in (sp.true, sp.false)
 
 
 def _open(domain: Domain) -> Domain | None:
-    """Return the inner points of a domain that inequalities bound; None where it has none or is bound otherwise."""
-    if not all(isinstance(c, Relational) and not isinstance(c, sp.Eq) for c in domain.conditions):
+    """Return the inner points of a domain that inequalities bound; None where it has none."""
+    if any(isinstance(c, sp.Eq) for c in domain.conditions):
         return None
-    strict = {sp.Ge: sp.Gt, sp.Le: sp.Lt}
-    conditions = (strict.get(type(c), c.func)(*c.args) for c in domain.conditions)
+    conditions = (sp.Gt(c.gts, c.lts) if isinstance(c, sp.Ge | sp.Le) else c for c in domain.conditions)
     kept = tuple(cast("Boolean", c) for c in conditions if c != sp.true)
     return None if sp.false in kept else Domain(kept, domain.box)
 

@@ -224,8 +224,8 @@ def on_the_motion(lagrangian: Lagrangian, *expressions: Expr) -> dict[Symbol, Ex
 def _is_affine_in_velocities(f: Expr, q: Sequence[Symbol], domain: Domain) -> Iterator[Question]:
     """Yield, unless the form of a function shows it, whether the function is affine in the velocities.
 
-    It is so on a domain exactly where its slopes, and what it is beside Σ slope·v, are the same at any two velocities of it.
-    That the slopes of the slopes vanish would not do: they do so for steps and for atan(tan v).
+    It is so on a domain exactly where its slopes, and what it is beside Σ slope·v, are the same at any two velocities
+    of it. That the slopes of the slopes vanish would not do: they do so for steps and for atan(tan v).
     """
     velocities = [velocity(x) for x in q]
     if is_affine(f, velocities):

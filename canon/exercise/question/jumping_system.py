@@ -152,8 +152,8 @@ def _state(system: Hamiltonian | Lagrangian) -> tuple[Symbol, ...]:
 def _jumps(system: Hamiltonian | Lagrangian, domain: Domain) -> list[Expr]:
     """Return what vanishes where H or L is not proved to be continuous; angles that wind are taken as they are.
 
-    It may jump at the cuts of functions with pieces and, hidden from all derivatives, where roots and logarithms branch or a
-    function is taken of a pole; where it is not real on one side it ends.
+    It may jump at the cuts of functions with pieces and, hidden from all derivatives, where roots and logarithms
+    branch or a function is taken of a pole; where it is not real on one side it ends.
     """
     f, state = _function(system), _state(system)
     found: dict[Expr, bool] = {}

@@ -181,10 +181,8 @@ def _solved_first(conditions: Sequence[Expr], free: Sequence[Symbol], domain: Do
 def _of_factor(factor: Expr, free: Sequence[Symbol], domain: Domain) -> list[Family] | None:
     """Return values of one parameter where a factor vanishes, and those of another where the first is left open."""
     unknowns = [s for s in free if factor.has(s)]
-    for s in unknowns:
-        slope = factor.diff(s)
-        if slope.has(s) or not is_affine(factor, [s]):
-            continue
+    for s in (s for s in unknowns if is_affine(factor, [s])):
+        slope = sp.expand(factor).diff(s)
         regular: Family = {s: sp.cancel(-exchanged(factor, {s: sp.S.Zero}) / slope)}
         if not slope.has(*free):
             return [regular]

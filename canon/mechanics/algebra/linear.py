@@ -199,8 +199,8 @@ def solve(
 def is_regular(matrix: sp.MatrixBase, domain: Domain | None = None, name: str = "the matrix") -> Verdict:
     """Tell whether a square matrix is regular at generic points of the domain.
 
-    Without pieces one nonzero value of the determinant is enough, as it is analytic. With pieces, or where a root, arc or
-    logarithm in it may step at a pole, the determinant must be proved to vanish on no open part of the domain.
+    Without pieces one nonzero value of the determinant is enough, as it is analytic. With pieces, or where a root, arc
+    or logarithm in it may step at a pole, the determinant must be proved to vanish on no open part of the domain.
 
     Returns
     -------
@@ -236,7 +236,7 @@ def is_regular(matrix: sp.MatrixBase, domain: Domain | None = None, name: str = 
 
 
 def _on_pieces(matrix: sp.MatrixBase, domain: Domain, name: str) -> Verdict | None:
-    """Return what is known of a matrix with pieces that is not proved to be regular on each; None where it is, or has none."""
+    """Return what is known of a matrix with pieces; None where it has none, or is proved to be regular on each."""
     entries = sp.Add(*(sp.Dummy() * entry for entry in matrix.flat()))
     if not (entries.has(*WITH_PIECES) or has_hidden_pieces(entries, domain)):
         return None

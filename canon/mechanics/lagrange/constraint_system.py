@@ -108,7 +108,7 @@ class ConstraintSystem:
         curved = self.all_vanish(name, [g.diff(a, b) for g in doubtful for a in v for b in v])
         if not curved.holds:
             return curved
-        at_rest = {u: sp.S.Zero for u in v}
+        at_rest = dict.fromkeys(v, sp.S.Zero)
         rebuilt = [
             sp.Add(exchanged(g, at_rest), *(u * exchanged(g.diff(u), at_rest) for u in v)) for g in doubtful
         ]

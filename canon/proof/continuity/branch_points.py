@@ -1,11 +1,12 @@
 """Branch points: surfaces across which roots, logarithms and what is taken of poles may hide a jump.
 
 Near a surface g = 0 each root or logarithm of c gᵐ, c ≠ 0, is the boundary value of one function that is analytic where
-Im g > 0, if c > 0, and where Im g < 0, if c < 0. Where all of them in an expression are of one kind, so is the whole, and
-limits from both sides are then equal (E. Lindelöf, Acta Soc. Sci. Fenn. 46 (1915) no. 4: an analytic function bounded in a
-sector has one limit along both sides). A sum of terms of which each is a composition of continuous functions, no denominator
-vanishing on the surface, is continuous too. What is neither may be as sqrt(-q)/(I*sqrt(q)), which is the sign of q. A
-function of what has a pole, as tanh(1/x), may have any two limits.
+Im g > 0, if c > 0, and where Im g < 0, if c < 0. Where all of them in an expression are of one kind, so is the whole,
+and limits from both sides are then equal (E. Lindelöf, Acta Soc. Sci. Fenn. 46 (1915) no. 4: an analytic function
+bounded in a sector has one limit along both sides; with limits on both sides, what grows there no faster than a power
+is bounded). A sum of terms of which each is a composition of continuous
+functions, no denominator vanishing on the surface, is continuous too. What is neither may be as sqrt(-q)/(I*sqrt(q)),
+which is the sign of q. A function of what has a pole, as tanh(1/x), may have any two limits.
 """
 
 from __future__ import annotations
@@ -75,7 +76,7 @@ class OpenSurface:
 class _Pool:
     """What branches at one surface in terms that are not bounded there."""
 
-    branches: dict[Expr, Branch] = field(default_factory=dict["Expr", "Branch"])
+    branches: dict[tuple[Expr, Expr], Branch] = field(default_factory=dict["tuple[Expr, Expr]", "Branch"])
 
 
 def open_surfaces(f: Expr, moving: Sequence[Symbol], domain: Domain) -> list[OpenSurface]:
@@ -99,7 +100,7 @@ def open_surfaces(f: Expr, moving: Sequence[Symbol], domain: Domain) -> list[Ope
             pool = pools.setdefault(branch.gap, _Pool())
             here = [b for b in found if b.gap == branch.gap]
             if not all(b.bounded for b in here) or _is_divided_by(term, branch.gap, [b.part for b in here]):
-                pool.branches[branch.part] = branch
+                pool.branches[branch.part, branch.cofactor] = branch
     mixed = [
         OpenSurface(gap, tuple(pool.branches.values()))
         for gap, pool in pools.items()
@@ -146,10 +147,22 @@ def _branches(term: Expr, moving: Sequence[Symbol]) -> Iterator[Branch]:
     for part in anatomy([term]).parts:
         if isinstance(part, sp.Expr) and part.has(*moving):
             for base, bounded in _bases(part):
-                for gap, count in _zeros_and_poles(base, moving):
-                    if count % 2 or not (isinstance(part, sp.Pow) and certainly_real(gap)):  # that of |g| is a cut
-                        cofactor = cast("Expr", sp.cancel(base / gap**count)) if gap != base else sp.S.One
-                        yield Branch(part, gap, count, cofactor, bounded and count > 0)
+                found = _zeros_and_poles(base, moving)
+                yield from (
+                    _branch(part, base, gap, count, bounded)
+                    for gap, count in found
+                    if _branches_by(part, gap, count)
+                )
+
+
+def _branches_by(part: Expr, gap: Expr, count: int) -> bool:
+    """Tell whether a factor makes a branch point; a root of one that it has twice is a modulus, which has a cut."""
+    return count % 2 == 1 or not (isinstance(part, sp.Pow) and certainly_real(gap))
+
+
+def _branch(part: Expr, base: Expr, gap: Expr, count: int, bounded: bool) -> Branch:
+    cofactor = cast("Expr", sp.cancel(base / gap**count)) if gap != base else sp.S.One
+    return Branch(part, gap, count, cofactor, bounded and count > 0)
 
 
 def _bases(part: Expr) -> Iterator[tuple[Expr, bool]]:
@@ -195,13 +208,15 @@ def _zeros_and_poles(base: Expr, moving: Sequence[Symbol]) -> Iterator[tuple[Exp
 
 
 def _is_divided_by(term: Expr, gap: Expr, parts: Sequence[Expr]) -> bool:
-    """Tell whether a denominator in a term may vanish where the gap does: it holds the gap as a factor, or the parts."""
+    """Tell whether a denominator in a term may vanish where the gap does: it has it as a factor, or holds the parts."""
     found = anatomy([term])
     below: list[Expr] = [e.base for e in found.of(sp.Pow) if not e.exp.is_nonnegative and e not in parts]
     below += [sp.cos(e.args[0]) for e in found.of(sp.tan, sp.sec)]
     below += [sp.sin(e.args[0]) for e in found.of(sp.cot, sp.csc)]
     for base in below:
-        if base.has(*parts) or any(sp.expand(g - s * gap) == 0 for g, _ in polynomial_factors(base) for s in (1, -1)):
+        if base.has(*parts) or any(
+            sp.expand(g - s * gap) == 0 for g, _ in polynomial_factors(base) for s in (1, -1)
+        ):
             return True
     return False
 
@@ -238,10 +253,12 @@ def _poles_of_arguments(part: Expr, moving: Sequence[Symbol]) -> Iterator[Expr]:
     given: tuple[Expr, ...] = ()
     if isinstance(part, sp.Pow) and part.exp.has(*moving):
         given = (part.exp,)
-    elif isinstance(part, sp.tanh):
+    elif isinstance(part, sp.tanh) or (
+        isinstance(part, sp.Function | AppliedUndef)
+        and not isinstance(part, PIECES)
+        and not any(_bases(part))
+    ):
         given = arguments(part)
-    elif isinstance(part, sp.Function | AppliedUndef) and not isinstance(part, PIECES) and not any(_bases(part)):
-        given = tuple(a for a in part.args if isinstance(a, sp.Expr))
     for a in given:
         if any(_poles(a, moving)):
             yield from _poles(cast("Expr", sp.cancel(a)) if anatomy([a]).tree <= LARGE else a, moving)
@@ -265,8 +282,7 @@ def _poles(u: Expr, moving: Sequence[Symbol]) -> Iterator[Expr]:
             return
         case sp.Add() | sp.Mul() | sp.Pow() | sp.Function():
             for a in arguments(u):
-                if isinstance(a, sp.Expr):
-                    yield from _poles(a, moving)
+                yield from _poles(a, moving)
         case _:
             return
     if below is not None:

@@ -102,6 +102,7 @@ def continuity(
     ('atan(q/p) is an angle that winds around p = 0, q = 0; where it jumps is a matter of choice',)
     """
     deadline, moving, name = time.monotonic() + budget, tuple(variables), name or str(f)
+    given = tuple(given)
     f = without_functions_of_parameters(f, moving, domain)
     f = without_complex_logarithms(with_moduli(off_the_kinks(f)))
     f = sp.expand_mul(f) if anatomy([f]).tree <= LARGE else f
@@ -114,19 +115,26 @@ def continuity(
     found = replace(found, assumed=(*found.assumed, *(text.format(name) for text in excused.values())))
     if found.fails:
         return found
-    borders = _gaps_of([*excused], moving, domain)
-    both: list[tuple[Expr, Sequence[Expr]]] = [(part, ()) for part in _parts(rough, moving)]
-    both += [(part, borders) for part in _parts([*rough, *excused], moving)] if excused else []
-    for part, between in both:
-        step = step_between_pieces(part, moving, domain, deadline, between)
-        if step is not None:
-            return _failed(name, step)
+    step = _step(rough, [*excused], moving, domain, deadline)
+    if step is not None:
+        return _failed(name, step)
     if found.holds:
-        found = _through_branches(f, found, [without_complex_logarithms(g) for g in given], moving, domain, deadline, name)
+        found = _through_branches(f, found, given, moving, domain, deadline, name)
     if found.holds and rough and time.monotonic() > deadline:
         why = f"whether {name} jumps was not decided in {budget:g} s"
         return Verdict(Status.UNDECIDED, found.question, evidence=(Evidence("open", why),), feedback=why)
     return found
+
+
+def _step(
+    rough: Sequence[Expr], excused: Sequence[Expr], moving: Sequence[Symbol], domain: Domain, deadline: float
+) -> Fault | None:
+    """Return a step of a sum of some terms whose derivatives vanish, on one side of where terms are excused."""
+    borders = _gaps_of(excused, moving, domain)
+    both: list[tuple[Expr, Sequence[Expr]]] = [(part, ()) for part in _parts(rough, moving)]
+    both += [(part, borders) for part in _parts([*rough, *excused], moving)] if excused else []
+    steps = (step_between_pieces(part, moving, domain, deadline, between) for part, between in both)
+    return next((step for step in steps if step is not None), None)
 
 
 def _through_branches(
@@ -138,8 +146,9 @@ def _through_branches(
     deadline: float,
     name: str,
 ) -> Verdict:
-    """Tell of a function that is continuous at its cuts whether it is so where it branches, and at poles inside functions."""
+    """Tell of what is continuous at its cuts whether it is so where it branches, and at poles inside functions."""
     surfaces = open_surfaces(f, moving, domain)
+    given = [without_complex_logarithms(g) for g in given]
     excused = {s.gap for g in (given if surfaces else ()) for s in open_surfaces(g, moving, domain)}
     assumed: list[str] = []
     left: list[Expr] = []
@@ -155,7 +164,9 @@ def _through_branches(
             left.append(surface.gap)
     if left:
         where = " or ".join(f"{gap} = 0" for gap in left)
-        why = f"{name} may jump where {where}, which its derivatives do not show; narrow the domain to one side"
+        why = (
+            f"{name} may jump where {where}, which its derivatives do not show; narrow the domain to one side"
+        )
         return Verdict(Status.UNDECIDED, found.question, evidence=(Evidence("open", why),), feedback=why)
     return replace(found, assumed=tuple(dict.fromkeys((*found.assumed, *assumed))))
 

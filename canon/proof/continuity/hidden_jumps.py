@@ -1,7 +1,8 @@
 """Hidden jumps: certified where roots and logarithms of one surface branch to different sides of it.
 
-With log g the boundary value from Im g > 0, log(c gᵐ) for real c ≠ 0 and g is log|c| + m log g + iπ k, where k tells how
-often π is to be added for the principal value: it differs where g > 0 and where g < 0. Roots follow as exponentials.
+With log g the boundary value from Im g > 0, log(c gᵐ) for real c ≠ 0 and g is log|c| + m log g + iπ k, where k tells
+how often π is to be added for the principal value: it differs where g > 0 and where g < 0. Roots follow as
+exponentials.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ LARGE = 2000
 def hidden_jump(
     f: Expr, surface: OpenSurface, moving: Sequence[Symbol], domain: Domain, deadline: float
 ) -> Jump | None:
-    """Return a certified jump of a function at a surface where its branches are of different kinds; None where none is found.
+    """Return a certified jump at a surface where branches are of different kinds; None where none is found.
 
     Examples
     --------
@@ -51,21 +52,33 @@ def hidden_jump(
     if not known or len(known) > MOST_PARTS or _are_nested(known):
         return None
     for signs in product((1, -1), repeat=len(known)):
-        if time.monotonic() > deadline:
-            return None
-        sides: list[Expr] = []
-        for up in (True, False):
-            by = {b.part: _side(b, sign, up=up) for b, sign in zip(known, signs, strict=True)}
-            side = cast("Expr", f.xreplace(cast("dict[sp.Basic, Expr]", by)))
-            side = sp.expand_mul(side) if anatomy([side]).tree <= LARGE else side  # so that log g cancels
-            sides.append(continued(side, surface.gap, moving, up=up))
         positive = [sign * b.cofactor for b, sign in zip(known, signs, strict=True)]
-        if sides[0] == sides[1] or any(c.is_number and not c.is_positive for c in positive):
+        if time.monotonic() > deadline or any(c.is_number and not c.is_positive for c in positive):
             continue
-        jump = jump_between(sides, surface.gap, moving, domain, deadline, positive)
+        above, below = (_whole(f, known, signs, surface.gap, moving, up=up) for up in (True, False))
+        sides = (above, below)
+        jump = (
+            jump_between(sides, surface.gap, moving, domain, deadline, positive) if above != below else None
+        )
         if jump is not None:
             return jump
     return None
+
+
+def _whole(
+    f: Expr,
+    branches: Sequence[Branch],
+    signs: Sequence[int],
+    gap: Expr,
+    moving: Sequence[Symbol],
+    *,
+    up: bool,
+) -> Expr:
+    """Return what a function is on one side of a surface where the cofactors of its branches have some signs."""
+    by = {b.part: _side(b, sign, up=up) for b, sign in zip(branches, signs, strict=True)}
+    side = cast("Expr", f.xreplace(cast("dict[sp.Basic, Expr]", by)))
+    side = sp.expand_mul(side) if anatomy([side]).tree <= LARGE else side  # so that log g cancels
+    return continued(side, gap, moving, up=up)
 
 
 def _are_nested(branches: Sequence[Branch]) -> bool:
@@ -73,7 +86,7 @@ def _are_nested(branches: Sequence[Branch]) -> bool:
 
 
 def _side(branch: Branch, sign: int, *, up: bool) -> Expr:
-    """Return a root or logarithm of cofactor · gap**count, the cofactor having a sign, where the gap is positive or not."""
+    """Return a root or logarithm of cofactor · gap**count, the cofactor having a sign, on one side of the gap."""
     m, g, size = branch.count, branch.gap, sign * branch.cofactor
     negative = (sign < 0) if up or m % 2 == 0 else (sign > 0)
     turns = sp.Integer(int(negative) - (0 if up else m))

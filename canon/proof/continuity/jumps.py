@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from canon.proof.domain.domain import Domain
 
-__all__ = ["Jump", "brackets", "continued", "find_jump", "is_edge", "jump_between", "shown"]
+__all__ = ["Jump", "continued", "find_jump", "is_edge", "jump_between", "shown"]
 
 BITS = 192
 NARROW = 60
@@ -102,38 +102,40 @@ def jump_between(
     Both are analytic across the surface wherever all of ``positive`` are so.
     """
     symbols = {s for f in (*sides, gap, *positive) for s in free_symbols(f)}
-    for point in domain.points(symbols, POINTS, deadline=deadline):
-        for s in sorted(free_symbols(gap) & set(variables), key=str):
-            for bracket in brackets(gap, s, point):
-                if time.monotonic() > deadline:
-                    return None
-                found = _jump_in(bracket, s, point, gap, sides, domain, positive)
-                if found is not None:
-                    return found
+    for point, s, ends in _crossings(symbols, gap, variables, domain, deadline):
+        if time.monotonic() > deadline:
+            return None
+        found = _jump_in(ends, s, point, gap, sides, domain, positive)
+        if found is not None:
+            return found
     return None
 
 
-def is_edge(
-    f: Expr, gap: Expr, variables: Sequence[Symbol], domain: Domain, deadline: float
-) -> bool:
+def is_edge(f: Expr, gap: Expr, variables: Sequence[Symbol], domain: Domain, deadline: float) -> bool:
     """Tell whether a function is certainly not real on one side of a surface, at each place where it was looked at.
 
-    It is analytic off the surfaces where it branches, so that it is not real in the parts that hold these points; what is
-    claimed is claimed where it is real, and has one side only there.
+    It is analytic off the surfaces where it branches, so that it is not real in the parts that hold these points; what
+    is claimed is claimed where it is real, and has one side only there.
     """
-    seen = 0
-    for point in domain.points(free_symbols(f) | free_symbols(gap), POINTS, deadline=deadline):
+    seen = False
+    for point, s, ends in _crossings(free_symbols(f) | free_symbols(gap), gap, variables, domain, deadline):
+        if time.monotonic() > deadline:
+            return False
+        sides = [{**point, s: end} for end in ends]
+        if all(domain.admits(side) for side in sides):
+            if all(_may_be_real(f, side) for side in sides):
+                return False
+            seen = True
+    return seen
+
+
+def _crossings(
+    symbols: set[Symbol], gap: Expr, variables: Sequence[Symbol], domain: Domain, deadline: float
+) -> Iterator[tuple[Mapping[Symbol, sp.Rational], Symbol, tuple[sp.Rational, sp.Rational]]]:
+    """Yield points of a domain, a symbol, and ends between which it takes the point across a surface."""
+    for point in domain.points(symbols, POINTS, deadline=deadline):
         for s in sorted(free_symbols(gap) & set(variables), key=str):
-            for ends in brackets(gap, s, point):
-                if time.monotonic() > deadline:
-                    return False
-                at_ends = [{**point, s: end} for end in ends]
-                if not all(domain.admits(end) for end in at_ends):
-                    continue
-                if all(_may_be_real(f, end) for end in at_ends):
-                    return False
-                seen += 1
-    return seen > 0
+            yield from ((point, s, ends) for ends in _brackets(gap, s, point))
 
 
 def _may_be_real(f: Expr, point: Mapping[Symbol, sp.Rational]) -> bool:
@@ -165,7 +167,7 @@ def continued(f: Expr, gap: Expr, variables: Sequence[Symbol], *, up: bool) -> E
     return sp.cancel(f) if f.is_rational_function() else f
 
 
-def brackets(
+def _brackets(
     gap: Expr, s: Symbol, point: Mapping[Symbol, sp.Rational]
 ) -> Iterator[tuple[sp.Rational, sp.Rational]]:
     """Yield short intervals at whose ends the gap has different signs, the other symbols having their values."""

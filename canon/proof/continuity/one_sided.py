@@ -113,7 +113,7 @@ def _cuts(part: Expr) -> Iterator[Cut]:
 
 
 def _finite(gap: Expr) -> Expr:
-    """Return an expression with the sign of another and without its poles: u v for u/v, which changes its sign at both."""
+    """Return what has the sign of an expression and no poles: u v for u/v, which changes its sign at both."""
     above, below = sp.fraction(sp.together(gap))
     return above * below if below.free_symbols else gap
 
@@ -248,7 +248,7 @@ def _roots(part: sp.Pow) -> Iterator[Cut]:
 
 
 def _factored(u: Expr) -> tuple[Expr, list[tuple[Expr, int]]]:
-    """Return a number and the factors of a fraction, those of its denominator counted below zero; none where it has none."""
+    """Return a number and the factors of a fraction, those of its denominator counted below zero, as far as known."""
     if anatomy([u]).tree > LARGE:
         return u, []
     found: list[tuple[Expr, int]] = []

@@ -180,8 +180,8 @@ class Domain:
     def is_connected(self, symbols: Iterable[Symbol]) -> bool:
         """Tell whether the domain, points excluded by ≠ added, is certainly connected.
 
-        An intersection of half spaces is convex. A symbol that is declared nonzero, of neither sign, takes its values on
-        two half-lines, which are not connected.
+        An intersection of half spaces is convex. A symbol that is declared nonzero, of neither sign, takes its values
+        on two half-lines, which are not connected.
         """
         if any(s.is_integer or declared_complex(s) or _parts(s) for s in symbols):
             return False

@@ -9,7 +9,7 @@ from sympy import Abs, And, Ge, Gt, Le, Lt
 from canon.proof.domain.declarations import declared_complex
 from canon.proof.domain.reality import certainly_real
 from canon.proof.trees.affine_form import is_affine
-from canon.proof.trees.sympy_types import free_symbols
+from canon.proof.trees.sympy_types import arguments, free_symbols
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -33,8 +33,8 @@ def parts_of(conditions: Iterable[Boolean]) -> Iterator[Boolean]:
 def linear(condition: Relational) -> bool:
     """Tell whether both sides of a relation differ by something affine in the symbols, all of them together.
 
-    What satisfies the relation is then convex, and a whole hyperplane where it is an equality: that is proved by the form of
-    the difference, as steps and atan(tan x) have constant derivatives too.
+    What satisfies the relation is then convex, and a whole hyperplane where it is an equality: that is proved by the
+    form of the difference, as steps and atan(tan x) have constant derivatives too.
 
     Examples
     --------
@@ -78,14 +78,14 @@ _REVERSED = {Lt: Gt, Le: Ge, Gt: Lt, Ge: Le}
 
 
 def unfolded(condition: Boolean) -> tuple[Boolean, ...]:
-    """Return |g| < c as g < c and −g < c, which bound a symbol where g is linear; g must be real wherever it has a value."""
+    """Return |g| < c as g < c and −g < c, which bound a symbol where g is linear; g must be certainly real."""
     if not isinstance(condition, Lt | Le | Gt | Ge) or any(map(declared_complex, free_symbols(condition))):
         return (condition,)
     less, greater = cast("Expr", condition.lts), cast("Expr", condition.gts)
     if not isinstance(less, Abs):
         return (condition,)
     relation = Lt if isinstance(condition, Lt | Gt) else Le
-    inner = cast("Expr", less.args[0])
+    (inner,) = arguments(less)
     if not certainly_real(inner):
         return (condition,)
     return cast("tuple[Boolean, ...]", (relation(inner, greater), relation(-inner, greater)))

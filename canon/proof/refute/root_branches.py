@@ -36,8 +36,8 @@ HIGHEST = 256
 def search_branches(left: Expr, right: Expr, domain: Domain, deadline: float) -> Search:
     """Look for a counterexample after equalities were solved for real symbols, roots included.
 
-    A counterexample must be a point of the domain as it was given: at its values every condition certainly holds, and no
-    equality is excluded; that the values solve the equalities exactly is what their form shows.
+    A counterexample must be a point of the domain as it was given: at its values every condition certainly holds, and
+    no equality is excluded; that the values solve the equalities exactly is what their form shows.
 
     Examples
     --------
@@ -96,7 +96,10 @@ def _belongs(point: Mapping[Symbol, sp.Rational], values: Mapping[Symbol, Expr],
 
 
 def _may_hold(
-    condition: Boolean, point: Mapping[Symbol, sp.Rational], balls: dict[sp.Basic, acb], closed: Sequence[Expr]
+    condition: Boolean,
+    point: Mapping[Symbol, sp.Rational],
+    balls: dict[sp.Basic, acb],
+    closed: Sequence[Expr],
 ) -> bool:
     try:
         return holds_at(condition, point, balls)

@@ -17,8 +17,9 @@ __all__ = ["has_affine_form", "is_affine"]
 def is_affine(expr: Expr, symbols: Iterable[Symbol]) -> bool:
     """Tell whether an expression is affine in some symbols as it is written, or once it is multiplied out.
 
-    Its value is then Σ slope·s + rest at *all* values of the symbols, with slopes and a rest that are free of them. That
-    its derivatives are constant would not do: atan(tan x) has the slope 1 and a step the slope 0 wherever they have any.
+    Its value is then Σ slope·s + rest at *all* values of the symbols, with slopes and a rest that are free of them.
+    That its derivatives are constant would not do: atan(tan x) has the slope 1 and a step the slope 0 wherever they
+    have any.
 
     Examples
     --------
