@@ -84,6 +84,7 @@ def open_surfaces(f: Expr, moving: Sequence[Symbol], domain: Domain) -> list[Ope
 
     Examples
     --------
+    >>> from canon.proof.domain.domain import Domain
     >>> q = sp.Symbol("q", real=True)
     >>> [s.gap for s in open_surfaces(sp.sqrt(-q) / sp.sqrt(q) + sp.tanh(1 / (q - 1)), [q], Domain())]
     [q, q - 1]
