@@ -29,8 +29,9 @@ if TYPE_CHECKING:
     from typing import Any
 
     from sympy import Expr
+    from sympy.logic.boolalg import Boolean
 
-__all__ = ["is_analytic", "is_positive_between", "is_uncut", "proved_sign"]
+__all__ = ["is_analytic", "is_positive_between", "is_uncut", "parting", "proved_sign"]
 
 SECONDS = 0.5
 """Time for the sign of one expression."""
@@ -45,8 +46,9 @@ def is_analytic(exprs: Iterable[Expr], domain: Domain) -> bool:
     The set is convex: what the symbols' signs and the linear conditions leave. Roots and logarithms count
     where the radicand is proved positive there, square roots also where it is a nonnegative polynomial
     without square factors, whose zeros then have codimension 2 and cut nothing in two. What has more than one
-    branch may not be taken of poles, which cut a line in two: atan(1/x) jumps where 1/x has one. Nonlinear
-    equalities leave several sheets and are declined.
+    branch may not be taken of poles, which cut a line in two: atan(1/x) jumps where 1/x has one, and no less so where x
+    is declared nonzero: in the convex set such a symbol is any real number. Nonlinear equalities leave several sheets
+    and are declined.
 
     Examples
     --------
@@ -58,9 +60,25 @@ def is_analytic(exprs: Iterable[Expr], domain: Domain) -> bool:
     if any(isinstance(c, sp.Eq) and not linear(c) for c in conditions):
         return False
     kinds = (sp.StrictLessThan, sp.LessThan, sp.StrictGreaterThan, sp.GreaterThan)
-    hull = Domain(tuple(c for c in conditions if isinstance(c, kinds) and linear(c)))
+    bounds = [c for c in conditions if isinstance(c, kinds) and linear(c)]
+    exprs = list(exprs)
+    plain: dict[sp.Basic, Expr] = {s: sp.Dummy(s.name, real=True) for s in parting((*exprs, *bounds))}
+    hull = Domain(tuple(cast("Boolean", c.xreplace(plain)) for c in bounds))
     seen: dict[sp.Basic, bool] = {}
-    return all(_analytic(expr, hull, seen) for expr in exprs)
+    return all(_analytic(expr.xreplace(plain) if plain else expr, hull, seen) for expr in exprs)
+
+
+def parting(exprs: Iterable[sp.Basic]) -> set[sp.Symbol]:
+    """Return the symbols that are declared nonzero and of neither sign: their values are two half-lines.
+
+    Examples
+    --------
+    >>> x, y = sp.Symbol("x", real=True, nonzero=True), sp.Symbol("y", positive=True)
+    >>> parting([x * y])
+    {x}
+    """
+    symbols = anatomy(list(exprs)).symbols
+    return {s for s in symbols if s.is_real and s.is_nonzero and not (s.is_positive or s.is_negative)}
 
 
 def _analytic(expr: sp.Basic, hull: Domain, seen: dict[sp.Basic, bool]) -> bool:

@@ -15,6 +15,7 @@ from canon.proof.domain.domain import EVERYWHERE, Domain, as_domain
 from canon.proof.domain.verdict import Evidence, Status, Verdict
 from canon.proof.kinks import off_kinks
 from canon.proof.refute.largest_minor import determinant, largest_minor
+from canon.proof.trees.affine_form import is_affine
 from canon.proof.trees.replacement import defined_nowhere
 from canon.proof.trees.sympy_types import arguments
 from canon.proof.vanish import vanishes
@@ -221,7 +222,7 @@ def _augmented(
         expr = given_expression(equation, f"equation {number} of the {which} system")
         row = [cast("Expr", expr.diff(u).xreplace(at_rest)) for u in unknowns]
         row.append(cast("Expr", expr.xreplace(at_rest)))
-        if not _is_affine(expr, set(unknowns)):
+        if not is_affine(expr, unknowns):
             again = sp.Add(*(slope * u for slope, u in zip(row, unknowns, strict=False)), row[-1])
             without_value = any(map(defined_nowhere, row))
             rebuilt = None if without_value else vanishes(expr - again, domain, deadline - time.monotonic())
@@ -231,16 +232,6 @@ def _augmented(
                 return f"equation {number} of the {which} system was not proved affine in the unknowns"
         rows.append(tuple(row))
     return tuple(rows)
-
-
-def _is_affine(expr: sp.Basic, unknowns: set[Symbol]) -> bool:
-    """Tell whether the form of an expression shows that it is affine."""
-    if not expr.free_symbols & unknowns or expr in unknowns:
-        return True
-    if isinstance(expr, sp.Mul):
-        moving = [factor for factor in expr.args if factor.free_symbols & unknowns]
-        return len(moving) == 1 and _is_affine(moving[0], unknowns)
-    return isinstance(expr, sp.Add) and all(_is_affine(term, unknowns) for term in expr.args)
 
 
 def _rows_follow(

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["OffKinks", "off_kinks", "vanishes_off_kinks"]
+__all__ = ["WITH_PIECES", "OffKinks", "is_thin", "off_kinks", "vanishes_off_kinks", "variants_of"]
 
 WITH_PIECES = (*KINKED, sp.Piecewise, sp.DiracDelta)
 """Functions with kinks, and what SymPy writes for the derivative of a jump."""
@@ -144,11 +144,11 @@ def off_kinks(functions: Iterable[Expr], domain: Domain, *, touching: bool = Tru
     settled: dict[Expr, bool | None] = {}
     off: dict[sp.Basic, sp.Basic] = {}
     for part, gap in _gaps(found):
-        variants = _variants(gap) if len(settled) < MOST_KINKS else None
+        variants = variants_of(gap) if len(settled) < MOST_KINKS else None
         factors = list(_factors([gap] if variants is None else variants, touching=touching))
         for factor in factors:
             if factor not in settled:
-                settled[factor] = variants is not None and _is_thin(factor, domain)
+                settled[factor] = variants is not None and is_thin(factor, domain)
         if all(settled[factor] is True for factor in factors):
             off |= _off_its_kink(part, variants or [], touching=touching)
     thin, doubtful = _where(settled, so=True), _where(settled, so=False)
@@ -210,7 +210,7 @@ def _varies(f: Expr) -> bool:
     return not all(s.is_integer for s in f.free_symbols)
 
 
-def _variants(gap: Expr) -> list[Expr] | None:
+def variants_of(gap: Expr) -> list[Expr] | None:
     """Return a function with each choice of its pieces, of which one holds near every point off inner kinks."""
     chosen: list[Expr] = [gap]
     done: list[Expr] = []
@@ -265,7 +265,7 @@ def _are_asked(variants: Sequence[Expr]) -> bool:
     return all(_varies(base) or base.is_nonzero for base in bases)
 
 
-def _is_thin(f: Expr, domain: Domain) -> bool | None:
+def is_thin(f: Expr, domain: Domain) -> bool | None:
     """Tell whether f = 0 has no inner points on the domain; None where f vanishes on all of it.
 
     An analytic function on a connected set that is not zero at one point vanishes on a thin set. One with square roots

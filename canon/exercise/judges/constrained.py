@@ -14,13 +14,14 @@ from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.question import Determines, Part, Question, Same, SameEquations, Tells, decide
 from canon.expression.symbols.symbol import acceleration, velocity
 from canon.expression.symbols.user_input import counted
-from canon.mechanics.algebra.constraint_manifold import on_manifold
+from canon.mechanics.algebra.constraint_manifold import check_whole, on_manifold
 from canon.mechanics.algebra.jets import jets_of, with_jets
 from canon.mechanics.algebra.linear import SingularMatrixError, eliminate, solve_affine
 from canon.mechanics.algebra.substitution import exchanged, substitute
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 from canon.mechanics.lagrange.hidden_constraints import all_motions
 from canon.proof.domain.verdict import Undecided, Verdict
+from canon.proof.trees.affine_form import is_affine
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -66,7 +67,7 @@ def bound_by(
             f"{counted(len(multipliers), 'multiplier')} for {counted(len(constraints), 'constraint')}",
         )
     v = lagrangian.velocities
-    if any(g.diff(u).has(*v) for g in constraints for u in v):
+    if not all(is_affine(g, v) for g in constraints):
         reading.fault("constraints", "every constraint should be affine in the velocities")
     for g in constraints:
         if not g.has(*lagrangian.q, *v):
@@ -78,7 +79,11 @@ def bound_by(
 
 
 def _on_every_motion(reading: Reading) -> Iterator[Question]:
-    """Accelerations and multipliers solve  M q̈ + b = Aᵀ λ  and  d(held)/dt = 0;  claims hold on the manifold."""
+    """Accelerations and multipliers solve  M q̈ + b = Aᵀ λ  and  d(held)/dt = 0;  claims hold on the manifold.
+
+    The branches of the manifold are all of it only where no factor without velocities of a constraint on velocities
+    may vanish: y (ẋ − ẏ) = 0 holds for every velocity where y = 0, and motions with y = 0 obey other equations.
+    """
     q, t, multipliers = reading.symbols("q"), reading.time, reading.symbols("multipliers")
     lagrangian = lagrangian_of(reading)
     bound, ordered = bound_by(reading, lagrangian, reading.equations("constraints"), multipliers)
@@ -93,6 +98,7 @@ def _on_every_motion(reading: Reading) -> Iterator[Question]:
     )
     open_ = {i: claim for i, claim in enumerate(claims) if not is_one_of(claim, system)} or {0: sp.S.Zero}
     domain = with_jets(reading.domain, jets)
+    check_whole([exchanged(g, jets) for g in bound.nonholonomic], lagrangian.velocities, domain)
     branches = on_manifold(manifold, domain, keep=(t, *unknowns), prefer=lagrangian.velocities)
     for branch in branches:
         here = [substitute(equation, branch.values) for equation in system]

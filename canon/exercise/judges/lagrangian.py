@@ -8,7 +8,7 @@ Euler's gyroscopic terms join in: the torque is I ω̇ + ω × I ω, so that of 
 from __future__ import annotations
 
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
@@ -36,9 +36,13 @@ from canon.mechanics.lagrange.appell import GibbsAppell
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.reduction.routh import routhian as routh
 from canon.proof.continuity.smooth import PIECED
+from canon.proof.domain.domain import Domain
+from canon.proof.trees.affine_form import is_affine
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
+
+    from sympy.logic.boolalg import Boolean
 
     from canon.exercise.sheet.reading import Reading
 
@@ -158,6 +162,7 @@ def lagrangian_equivalence(reading: Reading) -> Iterator[Question]:
         yield Same((Part("dF/dt", time_derivative(F, q, t), second - first),), reading.domain)
         yield is_continuous(F, (*q, t), reading.domain, "F")
     else:
+        yield from _is_affine_in_velocities(second - first, q, reading.domain)
         yield Same(tuple(_total_derivative_conditions(second - first, q, t)), reading.domain)
         check_gauge_term(_in_motion(second - first, q), q, t, reading.domain)
         yield from _no_steps(first, second, q, reading)
@@ -218,19 +223,29 @@ def on_the_motion(lagrangian: Lagrangian, *expressions: Expr) -> dict[Symbol, Ex
     return dict(zip(unknowns, lagrangian.accelerations, strict=True))
 
 
-def _affine_in(f: Expr, velocities: Sequence[Symbol]) -> Expr:
-    """Return the affine function with the values of f where no velocity, or one alone, is 1 and the rest 0."""
-    at_rest = dict.fromkeys(velocities, sp.S.Zero)
-    b = substitute(f, at_rest)
-    return sp.Add(b, *(v * (substitute(f, {**at_rest, v: sp.S.One}) - b) for v in velocities))
+def _is_affine_in_velocities(f: Expr, q: Sequence[Symbol], domain: Domain) -> Iterator[Question]:
+    """Yield, unless the form of a function shows it, whether the function is affine in the velocities.
+
+    It is so on a domain exactly where its slopes, and what it is beside Σ slope·v, are the same at any two velocities
+    of it. That the slopes of the slopes vanish would not do: they do so for steps and for atan(tan v).
+    """
+    velocities = [velocity(x) for x in q]
+    if is_affine(f, velocities):
+        return
+    others: dict[Symbol, Expr] = {v: sp.Dummy(f"{v}_1", **v.assumptions0) for v in velocities if f.has(v)}
+    slopes = {v: f.diff(v) for v in others}
+    rest = f - sp.Add(*(slope * v for v, slope in slopes.items()))
+    elsewhere = (cast("Boolean", c.xreplace(others)) for c in domain.conditions if c.has(*others))
+    parts = (
+        Part("L2 − L1 is affine in the velocities", e, cast("Expr", e.xreplace(others)))
+        for e in (*slopes.values(), rest)
+    )
+    yield Same(tuple(parts), Domain((*domain.conditions, *elsewhere), domain.box))
 
 
 def _total_derivative_conditions(difference: Expr, q: Sequence[Symbol], t: Symbol) -> Iterator[Part]:
     """Σ aᵢ q̇ᵢ + b is dF/dt of some F(q, t), locally, exactly where the form Σ aᵢ dqᵢ + b dt is closed."""
     velocities = [velocity(x) for x in q]
-    if any(part.has(*velocities) for part in difference.atoms(*PIECED)):
-        affine, difference = difference, _affine_in(difference, velocities)
-        yield Part("L2 − L1 is affine in the velocities", affine, difference)
     slopes = [difference.diff(v) for v in velocities]
     for i, a in enumerate(slopes):
         for v in velocities[i:]:

@@ -10,6 +10,7 @@ from sympy import Expr, Symbol
 from canon.exercise.judges.invariance import is_instead
 from canon.exercise.question.question import Part, Question, Same, fails
 from canon.expression.symbols.symbol import Coordinate, acceleration, time_derivative, velocity
+from canon.proof.trees.affine_form import is_affine
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -65,10 +66,14 @@ def differential(reading: Reading) -> Iterator[Question]:
         if symbol is None or symbol in x:
             reading.fault(f"given.{name}", "should be a declared symbol that is none of the variables")
         _check_linear(reading, f"given.{name}", form, marks)
+        if not is_affine(form, marks):
+            reading.fault(f"given.{name}", "should be a sum of the differentials with coefficients")
         rates[symbol] = form
     _check_linear(reading, "claim", claim, marks)
     right = sp.Add(*(f.diff(s) * form for s, form in rates.items()))
     parts = tuple(Part(f"the coefficient of {m}", claim.diff(m), sp.expand(right).diff(m)) for m in marks)
+    if not is_affine(claim, marks):  # steps, and atan(tan dx), have slopes that do not show them
+        parts = (*parts, Part("df", claim, right, key="claim"))
     yield Same(parts, reading.domain, lambda: sp.collect(sp.expand(right), marks), is_instead)
 
 

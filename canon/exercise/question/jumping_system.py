@@ -8,6 +8,7 @@ alone the state does not change.
 
 from __future__ import annotations
 
+import time
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -19,8 +20,9 @@ from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.analytic import proved_sign
+from canon.proof.continuity.branch_points import open_surfaces
 from canon.proof.continuity.continuity import meets
-from canon.proof.continuity.jumps import continued
+from canon.proof.continuity.jumps import continued, is_edge
 from canon.proof.continuity.one_sided import cuts_of, off_the_kinks
 from canon.proof.continuity.winding_centre import centre_of
 from canon.proof.domain.verdict import Undecided
@@ -148,14 +150,22 @@ def _state(system: Hamiltonian | Lagrangian) -> tuple[Symbol, ...]:
 
 
 def _jumps(system: Hamiltonian | Lagrangian, domain: Domain) -> list[Expr]:
-    """Return what vanishes where H or L is not proved to be continuous; angles that wind are taken as they are."""
+    """Return what vanishes where H or L is not proved to be continuous; angles that wind are taken as they are.
+
+    It may jump at the cuts of functions with pieces and, hidden from all derivatives, where roots and logarithms
+    branch or a function is taken of a pole; where it is not real on one side it ends.
+    """
     f, state = _function(system), _state(system)
     found: dict[Expr, bool] = {}
     for cut in cuts_of(f, state):
-        if cut.gap in found or isinstance(cut.part, sp.Pow) or centre_of(cut, state, domain):
+        if cut.gap in found or centre_of(cut, state, domain):
             continue
         apart = proved_sign(cut.gap, domain) in ("+", "-")
         found[cut.gap] = not apart and not meets(f, cut.gap, state, domain, SIDE_SECONDS)
+    until = time.monotonic() + SIDE_SECONDS
+    for surface in open_surfaces(f, state, domain):
+        if surface.gap not in found:
+            found[surface.gap] = f.has(sp.I) or not is_edge(f, surface.gap, state, domain, until)
     return [gap for gap, jumps in found.items() if jumps]
 
 

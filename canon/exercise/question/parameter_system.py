@@ -22,6 +22,7 @@ from canon.proof.analytic import proved_sign
 from canon.proof.continuity.smooth import PIECED
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.verdict import Undecided
+from canon.proof.trees.affine_form import is_affine
 from canon.proof.trees.function_places import at_plain_places, outermost, places_apart
 from canon.proof.trees.polynomial import polynomial_factors
 from canon.proof.trees.sympy_types import arguments, rational
@@ -217,10 +218,8 @@ def _solved_first(conditions: Sequence[Expr], free: Sequence[Symbol], domain: Do
 def _of_factor(factor: Expr, free: Sequence[Symbol], domain: Domain) -> list[Family] | None:
     """Return values of one parameter where a factor vanishes, and those of another where the first is left open."""
     unknowns = [s for s in free if factor.has(s)]
-    for s in unknowns:
-        slope = factor.diff(s)
-        if slope.has(s):
-            continue
+    for s in (s for s in unknowns if is_affine(factor, [s])):
+        slope = sp.expand(factor).diff(s)
         regular: Family = {s: sp.cancel(-exchanged(factor, {s: sp.S.Zero}) / slope)}
         if not slope.has(*free):
             return [regular]

@@ -322,7 +322,8 @@ def decide(question: Question, deadline: Deadline) -> Verdict:
             verdict = off.ask(lambda there: is_regular(seen, there, name), by_point=Status.HOLDS)
             if verdict.holds and exceptions:
                 return replace(verdict, assumed=(*verdict.assumed, *_singular_places(matrix, name, domain)))
-            return replace(verdict, feedback=singular_is or verdict.feedback) if verdict.fails else verdict
+            everywhere = verdict.fails and any(e.kind == "null direction" for e in verdict.evidence)
+            return replace(verdict, feedback=singular_is or verdict.feedback) if everywhere else verdict
 
 
 def _singular_places(matrix: sp.MatrixBase, name: str, domain: Domain) -> Iterator[str]:

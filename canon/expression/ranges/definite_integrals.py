@@ -87,7 +87,12 @@ def _antiderivative(term: Expr, x: Symbol, *, positive: bool) -> Expr | None:
     if function is None:
         return _of_power(outside, x, power, positive=positive)
     slope = cast("Expr", function.args[0]).diff(x)
-    if slope.has(x) or not slope.is_nonzero or not (power.is_Integer and 0 <= power <= MOST_POWER):
+    if (
+        slope.has(x)
+        or sp.expand(function.args[0] - slope * x).has(x)
+        or not slope.is_nonzero
+        or not (power.is_Integer and 0 <= power <= MOST_POWER)
+    ):
         return None  # cos(n x) with n = 0 has another integral
     return outside * _by_parts(int(power), function, x, slope)
 

@@ -6,7 +6,7 @@ Entries stay as they are built; only pivots are asked whether they vanish, and t
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
@@ -15,7 +15,8 @@ from canon.cached_property import cached_property
 from canon.mechanics.algebra.substitution import exchanged, size
 from canon.proof.domain.domain import Domain, as_domain
 from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict
-from canon.proof.kinks import vanishes_off_kinks
+from canon.proof.kinks import WITH_PIECES, vanishes_off_kinks
+from canon.proof.zero_pieces import has_hidden_pieces, zero_piece
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -198,6 +199,9 @@ def solve(
 def is_regular(matrix: sp.MatrixBase, domain: Domain | None = None, name: str = "the matrix") -> Verdict:
     """Tell whether a square matrix is regular at generic points of the domain.
 
+    Without pieces one nonzero value of the determinant is enough, as it is analytic. With pieces, or where a root, arc
+    or logarithm in it may step at a pole, the determinant must be proved to vanish on no open part of the domain.
+
     Returns
     -------
     Verdict
@@ -217,6 +221,9 @@ def is_regular(matrix: sp.MatrixBase, domain: Domain | None = None, name: str = 
         return Verdict(Status.UNDECIDED, question, evidence=(Evidence("pivot", str(undecided)),))
     null = eliminated.null_direction
     if null is None:
+        on_pieces = _on_pieces(matrix, as_domain(domain), name)
+        if on_pieces is not None:
+            return on_pieces
         return Verdict(Status.HOLDS, question, certificate="exact", assumed=eliminated.assumed)
     return Verdict(
         Status.FAILS,
@@ -226,6 +233,21 @@ def is_regular(matrix: sp.MatrixBase, domain: Domain | None = None, name: str = 
         evidence=(Evidence("null direction", f"({_listed(null)})"),),
         feedback=f"{name} is singular: it maps the direction ({_listed(null)}) to zero",
     )
+
+
+def _on_pieces(matrix: sp.MatrixBase, domain: Domain, name: str) -> Verdict | None:
+    """Return what is known of a matrix with pieces; None where it has none, or is proved to be regular on each."""
+    entries = sp.Add(*(sp.Dummy() * entry for entry in matrix.flat()))
+    if not (entries.has(*WITH_PIECES) or has_hidden_pieces(entries, domain)):
+        return None
+    where = zero_piece(cast("Expr", matrix.det(method="berkowitz")), domain)
+    if where == "":
+        return None
+    question = f"{name} is regular"
+    if where is None:
+        why = f"{name} has pieces, and may be singular on one of them; narrow the domain to one piece"
+        return Verdict(Status.UNDECIDED, question, evidence=(Evidence("pieces", why),), feedback=why)
+    return Verdict(Status.FAILS, question, "exact", feedback=f"{name} is singular where {where}")
 
 
 def _pivot_row(

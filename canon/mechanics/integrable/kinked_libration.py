@@ -21,6 +21,7 @@ from canon.mechanics.integrable.ball_function import BallFunction, NotHolomorphi
 from canon.mechanics.integrable.cycle_quadrature import Libration, integral_along
 from canon.mechanics.integrable.turning_points import NoCycleError
 from canon.proof.domain.balls import value
+from canon.proof.trees.affine_form import is_affine
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -140,7 +141,7 @@ def _kinks(
         slope = u.diff(q)
         if slope == 0:
             continue
-        if slope.has(q):
+        if slope.has(q) or not is_affine(u, [q]):
             _refuse_kink_within(u, q, balls, ends)
             continue
         place = sp.expand(q - u / slope)

@@ -21,6 +21,7 @@ from canon.mechanics.algebra.linear import SingularMatrixError, solve
 from canon.mechanics.algebra.substitution import as_tuple, entry, exchanged
 from canon.mechanics.lagrange.dependence import check_independent
 from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.proof.trees.affine_form import is_affine
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -85,7 +86,7 @@ class ConstrainedLagrangian:
             if f.has(*v):
                 raise ValueError(f"{f} = 0 holds velocities; give it as a nonholonomic constraint")
         for g in self.nonholonomic:
-            if any(g.diff(a).has(*v) for a in v):
+            if not is_affine(g, v):
                 raise ValueError(
                     f"{g} = 0 is not affine in the velocities, so d'Alembert's principle does not cover it"
                 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time as clock
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations, product
 from typing import TYPE_CHECKING, cast
 
@@ -27,6 +27,7 @@ from canon.mechanics.lagrange.frobenius import Pfaffian, exterior_derivative
 from canon.proof.continuity.smooth import PIECED, without_pieces
 from canon.proof.domain.domain import Domain, as_domain
 from canon.proof.domain.verdict import Status, Undecided, Verdict, all_hold
+from canon.proof.trees.affine_form import is_affine
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -99,10 +100,23 @@ class ConstraintSystem:
 
     @cached_property
     def affine(self) -> Verdict:
-        """Whether every constraint is affine in the velocities."""
-        v = [velocity(x) for x in self.q]
-        seconds = [g.diff(a, b) for g in self.velocities for a in v for b in v]
-        return self.all_vanish("affine in the velocities", seconds)
+        """Whether every constraint is affine in the velocities: by its form, or as Σ slope·v + rest is proved to be it.
+
+        Second derivatives that vanish would not do: that of ẏ = atan(tan ẋ) does, which is no plane.
+        """
+        name, v = "affine in the velocities", [velocity(x) for x in self.q]
+        doubtful = [g for g in self.velocities if not is_affine(g, v)]
+        if not doubtful:
+            return Verdict(Status.HOLDS, name, "structure")
+        curved = self.all_vanish(name, [g.diff(a, b) for g in doubtful for a in v for b in v])
+        if not curved.holds:
+            return curved
+        at_rest = dict.fromkeys(v, sp.S.Zero)
+        rebuilt = [
+            sp.Add(exchanged(g, at_rest), *(u * exchanged(g.diff(u), at_rest) for u in v)) for g in doubtful
+        ]
+        same = self.all_vanish(name, [g - plane for g, plane in zip(doubtful, rebuilt, strict=True)])
+        return same if same.holds else replace(same, status=Status.UNDECIDED)
 
     @cached_property
     def integrable(self) -> Verdict:

@@ -18,6 +18,7 @@ from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain, pl
 from canon.mechanics.lagrange.body import RigidBody, kinetic_energy
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.lagrange.quasi_velocity import Kinematics
+from canon.proof.trees.affine_form import is_affine
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -131,7 +132,7 @@ def generalized_moments(
         omega = [kinematics.along(w) for w in given]
         pairs += zip((kinematics.plain(given_expression(M)) for M in moment), omega, strict=True)
     slopes = [[w.diff(v) for _, w in pairs] for v in velocities]
-    if any(slope.has(*velocities) for row in slopes for slope in row):
+    if not all(is_affine(w, velocities) for _, w in pairs):
         raise ValueError(
             "an angular velocity is not affine in the velocities, so its moment has no virtual work"
         )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 
+from canon.proof.analytic import parting
 from canon.proof.continuity.jumps import shown
 from canon.proof.continuity.one_sided import off_the_kinks
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
@@ -88,8 +89,9 @@ def step_between_pieces(
 def _planes(f: Expr, moving: Sequence[Symbol], domain: Domain, borders: Sequence[Expr]) -> list[Expr] | None:
     """Return what vanishes where the domain comes to pieces, all of them planes; None where others part it too."""
     cases = [c for c in parts_of(domain.conditions) if isinstance(c, sp.Ne)]
+    whole = free_symbols(f) - parting([f])  # parameters keep their values, and variables have their planes
     curved = any(border.diff(x).has(*moving) for border in borders for x in moving)
-    if curved or not domain.is_connected(free_symbols(f)) or not all(map(linear, cases)):
+    if curved or not domain.is_connected(whole) or not all(map(linear, cases)):
         return None
     return [*(cast("Expr", c.lhs) - cast("Expr", c.rhs) for c in cases), *nonzero(f, moving), *borders]
 

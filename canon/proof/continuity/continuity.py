@@ -16,8 +16,10 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 
 from canon.proof.analytic import is_positive_between, is_uncut, proved_sign
+from canon.proof.continuity.branch_points import open_surfaces
 from canon.proof.continuity.constant_steps import Fault, nonzero, step_between_pieces
-from canon.proof.continuity.jumps import Jump, continued, find_jump
+from canon.proof.continuity.hidden_jumps import hidden_jump
+from canon.proof.continuity.jumps import Jump, continued, find_jump, is_edge
 from canon.proof.continuity.one_sided import (
     Cut,
     cuts_of,
@@ -64,6 +66,10 @@ def continuity(
 ) -> Verdict:
     """Tell whether a function is continuous wherever it has a value near both sides, poles left aside.
 
+    It may jump only where a function with pieces has its cuts, where both continuations must be proved equal, and where
+    roots and logarithms branch or a function is taken of a pole, where :mod:`canon.proof.continuity.branch_points` must
+    prove it. What is not real on one side of such a surface is claimed on the other only.
+
     Parameters
     ----------
     f
@@ -96,6 +102,7 @@ def continuity(
     ('atan(q/p) is an angle that winds around p = 0, q = 0; where it jumps is a matter of choice',)
     """
     deadline, moving, name = time.monotonic() + budget, tuple(variables), name or str(f)
+    given = tuple(given)
     f = without_functions_of_parameters(f, moving, domain)
     f = without_complex_logarithms(with_moduli(off_the_kinks(f)))
     f = sp.expand_mul(f) if anatomy([f]).tree <= LARGE else f
@@ -108,17 +115,60 @@ def continuity(
     found = replace(found, assumed=(*found.assumed, *(text.format(name) for text in excused.values())))
     if found.fails:
         return found
-    borders = _gaps_of([*excused], moving, domain)
-    both: list[tuple[Expr, Sequence[Expr]]] = [(part, ()) for part in _parts(rough, moving)]
-    both += [(part, borders) for part in _parts([*rough, *excused], moving)] if excused else []
-    for part, between in both:
-        step = step_between_pieces(part, moving, domain, deadline, between)
-        if step is not None:
-            return _failed(name, step)
+    step = _step(rough, [*excused], moving, domain, deadline)
+    if step is not None:
+        return _failed(name, step)
+    if found.holds:
+        found = _through_branches(f, found, given, moving, domain, deadline, name)
     if found.holds and rough and time.monotonic() > deadline:
         why = f"whether {name} jumps was not decided in {budget:g} s"
         return Verdict(Status.UNDECIDED, found.question, evidence=(Evidence("open", why),), feedback=why)
     return found
+
+
+def _step(
+    rough: Sequence[Expr], excused: Sequence[Expr], moving: Sequence[Symbol], domain: Domain, deadline: float
+) -> Fault | None:
+    """Return a step of a sum of some terms whose derivatives vanish, on one side of where terms are excused."""
+    borders = _gaps_of(excused, moving, domain)
+    both: list[tuple[Expr, Sequence[Expr]]] = [(part, ()) for part in _parts(rough, moving)]
+    both += [(part, borders) for part in _parts([*rough, *excused], moving)] if excused else []
+    steps = (step_between_pieces(part, moving, domain, deadline, between) for part, between in both)
+    return next((step for step in steps if step is not None), None)
+
+
+def _through_branches(
+    f: Expr,
+    found: Verdict,
+    given: Sequence[Expr],
+    moving: Sequence[Symbol],
+    domain: Domain,
+    deadline: float,
+    name: str,
+) -> Verdict:
+    """Tell of what is continuous at its cuts whether it is so where it branches, and at poles inside functions."""
+    surfaces = open_surfaces(f, moving, domain)
+    given = [without_complex_logarithms(g) for g in given]
+    excused = {s.gap for g in (given if surfaces else ()) for s in open_surfaces(g, moving, domain)}
+    assumed: list[str] = []
+    left: list[Expr] = []
+    for surface in surfaces:
+        jump = hidden_jump(f, surface, moving, domain, deadline)
+        if jump is not None and surface.gap not in excused:
+            return _failed(name, _fault_of(jump))
+        if surface.gap in excused:
+            assumed.append(f"{name} may jump where {surface.gap} = 0, as what is given does")
+        elif not f.has(sp.I) and is_edge(f, surface.gap, moving, domain, deadline):
+            assumed.append(f"{name} is claimed where it is real")
+        else:
+            left.append(surface.gap)
+    if left:
+        where = " or ".join(f"{gap} = 0" for gap in left)
+        why = (
+            f"{name} may jump where {where}, which its derivatives do not show; narrow the domain to one side"
+        )
+        return Verdict(Status.UNDECIDED, found.question, evidence=(Evidence("open", why),), feedback=why)
+    return replace(found, assumed=tuple(dict.fromkeys((*found.assumed, *assumed))))
 
 
 def _failed(name: str, fault: Fault) -> Verdict:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from canon.proof.domain.domain import Domain
 
-__all__ = ["Jump", "continued", "find_jump", "shown"]
+__all__ = ["Jump", "continued", "find_jump", "is_edge", "jump_between", "shown"]
 
 BITS = 192
 NARROW = 60
@@ -86,18 +86,64 @@ def find_jump(f: Expr, cut: Cut, variables: Sequence[Symbol], domain: Domain, de
     ('0', '3.1415')
     """
     sides = [continued(f, cut.gap, variables, up=up) for up in (True, False)]
-    symbols = free_symbols(f) | free_symbols(cut.gap)
-    for point in domain.points(symbols, POINTS, deadline=deadline):
-        for s in sorted(free_symbols(cut.gap) & set(variables), key=str):
-            if s.is_integer:
-                continue
-            for bracket in _brackets(cut.gap, s, point):
-                if time.monotonic() > deadline:
-                    return None
-                found = _jump_in(bracket, s, point, cut.gap, sides, domain)
-                if found is not None:
-                    return found
+    return jump_between(sides, cut.gap, variables, domain, deadline)
+
+
+def jump_between(
+    sides: Sequence[Expr],
+    gap: Expr,
+    variables: Sequence[Symbol],
+    domain: Domain,
+    deadline: float,
+    positive: Sequence[Expr] = (),
+) -> Jump | None:
+    """Return a certified jump between two functions at a surface, the first holding where the gap is positive.
+
+    Both are analytic across the surface wherever all of ``positive`` are so.
+    """
+    symbols = {s for f in (*sides, gap, *positive) for s in free_symbols(f)}
+    for point, s, ends in _crossings(symbols, gap, variables, domain, deadline):
+        if time.monotonic() > deadline:
+            return None
+        found = _jump_in(ends, s, point, gap, sides, domain, positive)
+        if found is not None:
+            return found
     return None
+
+
+def is_edge(f: Expr, gap: Expr, variables: Sequence[Symbol], domain: Domain, deadline: float) -> bool:
+    """Tell whether a function is certainly not real on one side of a surface, at each place where it was looked at.
+
+    It is analytic off the surfaces where it branches, so that it is not real in the parts that hold these points; what
+    is claimed is claimed where it is real, and has one side only there.
+    """
+    seen = False
+    for point, s, ends in _crossings(free_symbols(f) | free_symbols(gap), gap, variables, domain, deadline):
+        if time.monotonic() > deadline:
+            return False
+        sides = [{**point, s: end} for end in ends]
+        if all(domain.admits(side) for side in sides):
+            if all(_may_be_real(f, side) for side in sides):
+                return False
+            seen = True
+    return seen
+
+
+def _crossings(
+    symbols: set[Symbol], gap: Expr, variables: Sequence[Symbol], domain: Domain, deadline: float
+) -> Iterator[tuple[Mapping[Symbol, sp.Rational], Symbol, tuple[sp.Rational, sp.Rational]]]:
+    """Yield points of a domain, a symbol, and ends between which it takes the point across a surface."""
+    for point in domain.points(symbols, POINTS, deadline=deadline):
+        for s in sorted(free_symbols(gap) & set(variables), key=str):
+            yield from ((point, s, ends) for ends in _brackets(gap, s, point))
+
+
+def _may_be_real(f: Expr, point: Mapping[Symbol, sp.Rational]) -> bool:
+    with precision(BITS):
+        try:
+            return bool(value(f, point).imag.contains(0))
+        except _NO_VALUE:
+            return True
 
 
 def continued(f: Expr, gap: Expr, variables: Sequence[Symbol], *, up: bool) -> Expr:
@@ -125,6 +171,8 @@ def _brackets(
     gap: Expr, s: Symbol, point: Mapping[Symbol, sp.Rational]
 ) -> Iterator[tuple[sp.Rational, sp.Rational]]:
     """Yield short intervals at whose ends the gap has different signs, the other symbols having their values."""
+    if s.is_integer:
+        return
     others = {x: number for x, number in point.items() if x != s}
     here = cast("Expr", gap.xreplace(others))
     for root in _roots(here, s):
@@ -194,6 +242,7 @@ def _jump_in(
     gap: Expr,
     sides: Sequence[Expr],
     domain: Domain,
+    positive: Sequence[Expr] = (),
 ) -> Jump | None:
     others = {x: number for x, number in point.items() if x != s}
     with precision(BITS):
@@ -204,6 +253,7 @@ def _jump_in(
                 return None
             slope = value(off_the_kinks(gap.diff(s)), others, memo)
             clear = all(_clear(e, s, others, memo) for e in (gap, *sides))
+            clear = clear and all(_is_positive(e, others, memo) for e in positive)
             if slope.contains(0) or not clear:
                 return None
             above, below = (value(side, others, memo) for side in sides)
@@ -214,6 +264,11 @@ def _jump_in(
         before, after = (below, above) if slope.real > 0 else (above, below)
         where = {x.name: str(number) for x, number in others.items()} | {s.name: _place(*bracket)}
         return Jump(where, s, shown(before), shown(after))
+
+
+def _is_positive(e: Expr, others: Mapping[Symbol, sp.Rational], memo: dict[sp.Basic, acb]) -> bool:
+    found = value(e, others, memo)
+    return bool(found.imag.is_zero() and found.real > 0)
 
 
 def _place(a: sp.Rational, b: sp.Rational) -> str:

@@ -90,9 +90,11 @@ def cuts_of(f: Expr, variables: Sequence[Symbol]) -> list[Cut]:
 def _cuts(part: Expr) -> Iterator[Cut]:
     match part:
         case sp.sign():
-            yield Cut(part, arguments(part)[0], sp.S.One, sp.S.NegativeOne)
+            yield Cut(part, _finite(arguments(part)[0]), sp.S.One, sp.S.NegativeOne)
         case sp.Heaviside():
-            yield Cut(part, arguments(part)[0], sp.S.One, sp.S.Zero)
+            yield Cut(part, _finite(arguments(part)[0]), sp.S.One, sp.S.Zero)
+        case sp.arg() if certainly_real(arguments(part)[0]):
+            yield Cut(part, _finite(arguments(part)[0]), sp.S.Zero, sp.pi)
         case sp.Abs():
             u = arguments(part)[0]
             yield Cut(part, u, u, -u, bends=True)
@@ -108,6 +110,12 @@ def _cuts(part: Expr) -> Iterator[Cut]:
             yield from _roots(part)
         case _:
             pass
+
+
+def _finite(gap: Expr) -> Expr:
+    """Return what has the sign of an expression and no poles: u v for u/v, which changes its sign at both."""
+    above, below = sp.fraction(sp.together(gap))
+    return above * below if below.free_symbols else gap
 
 
 def _angles(part: sp.atan2) -> Iterator[Cut]:
@@ -162,7 +170,7 @@ def _pieces(part: sp.Piecewise) -> Iterator[Cut]:
 
 
 def _gap(relation: Relational) -> Expr:
-    return cast("Expr", relation.lhs) - cast("Expr", relation.rhs)
+    return _finite(cast("Expr", relation.lhs) - cast("Expr", relation.rhs))
 
 
 def _truth(relation: Relational, positive: bool) -> sp.Basic:
@@ -227,19 +235,32 @@ _IN_SINES = {
 
 
 def _roots(part: sp.Pow) -> Iterator[Cut]:
-    """Yield a cut for each factor that the radicand has twice: √(v² w) is |v| √w."""
+    """Yield a cut for each factor that the radicand has twice, above or below: √(v² w) is |v| √w, √(w/v²) is √w/|v|."""
     exponent = part.exp
     if not isinstance(exponent, sp.Rational) or exponent.is_integer or part.base.is_number:
         return
-    try:
-        unit, factors = cast("tuple[Expr, list[tuple[Expr, int]]]", sp.factor_list(part.base))
-    except sp.PolynomialError:
-        return
+    unit, factors = _factored(part.base)
     for factor, count in factors:
         if count % 2 == 0 and certainly_real(factor):
             others = sp.Mul(unit, *(g**n for g, n in factors if g != factor))
             above, below = ((side * factor) ** (count * exponent) * others**exponent for side in (1, -1))
             yield Cut(part, factor, above, below, bends=True)
+
+
+def _factored(u: Expr) -> tuple[Expr, list[tuple[Expr, int]]]:
+    """Return a number and the factors of a fraction, those of its denominator counted below zero, as far as known."""
+    if anatomy([u]).tree > LARGE:
+        return u, []
+    found: list[tuple[Expr, int]] = []
+    units: list[Expr] = []
+    for side, sign in zip(sp.fraction(sp.together(u)), (1, -1), strict=True):
+        try:
+            unit, factors = cast("tuple[Expr, list[tuple[Expr, int]]]", sp.factor_list(side))
+        except sp.PolynomialError:
+            return u, []
+        units.append(unit**sign)
+        found += [(factor, sign * count) for factor, count in factors]
+    return sp.Mul(*units), found
 
 
 def with_moduli(f: Expr) -> Expr:

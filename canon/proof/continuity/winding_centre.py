@@ -11,6 +11,7 @@ from canon.proof.analytic import proved_sign
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.relations import linear, parts_of
+from canon.proof.trees.affine_form import is_affine
 from canon.proof.trees.sympy_types import free_symbols, short
 
 if TYPE_CHECKING:
@@ -83,7 +84,7 @@ def _solved_in_turn(pair: tuple[Expr, Expr], variables: Sequence[Symbol]) -> str
 def _zero(f: Expr, s: Symbol) -> Expr | None:
     """Return the zero of what is linear in a symbol."""
     slope = f.diff(s)
-    if slope.has(s) or slope.is_nonzero is not True:
+    if slope.has(s) or slope.is_nonzero is not True or not is_affine(f, [s]):
         return None
     return -f.subs(s, 0) / slope
 

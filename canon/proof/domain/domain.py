@@ -180,9 +180,10 @@ class Domain:
     def is_connected(self, symbols: Iterable[Symbol]) -> bool:
         """Tell whether the domain, points excluded by ≠ added, is certainly connected.
 
-        An intersection of half spaces is convex.
+        An intersection of half spaces is convex. A symbol that is declared nonzero, of neither sign, takes its values
+        on two half-lines, which are not connected.
         """
-        if any(s.is_integer or declared_complex(s) for s in symbols):
+        if any(s.is_integer or declared_complex(s) or _parts(s) for s in symbols):
             return False
         bounds = (c for c in parts_of(self.conditions) if not isinstance(c, Ne))
         return all(isinstance(c, Lt | Le | Gt | Ge) and linear(c) for c in bounds)
@@ -311,6 +312,10 @@ MOST_MOVES = 40
 
 MOST_UNSOLVED = 12
 """Attempts without rational numbers that satisfy the equalities after which none are looked for."""
+
+
+def _parts(s: Symbol) -> bool:
+    return bool(s.is_nonzero and not s.is_positive and not s.is_negative)
 
 
 def conditions_hold(conditions: Iterable[Boolean], point: Mapping[Symbol, Rational]) -> bool:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 from sympy import Rational, Symbol
 
+from canon.proof.trees.affine_form import is_affine
 from canon.proof.trees.sympy_types import by_name, free_symbols, rational
 
 if TYPE_CHECKING:
@@ -98,7 +99,7 @@ def _solved_in_turn(
     for gap in equations:
         for s in (s for s in near if gap.has(s) and s not in kept):
             slope = gap.diff(s)
-            if s in slope.free_symbols:
+            if s in slope.free_symbols or not is_affine(gap, [s]):
                 continue
             others = {name: number for name, number in settled.items() if name != s}
             slope = cast("Expr", slope.xreplace(others))
@@ -137,7 +138,7 @@ def _linear(equations: Sequence[Expr]) -> dict[Symbol, Expr] | None:
     for e in equations:
         for s in by_name(e):
             slope = e.diff(s)
-            if isinstance(slope, Rational):
+            if isinstance(slope, Rational) and is_affine(e, [s]):
                 rest = cast("Expr", e.xreplace({s: sp.Integer(0)}))
                 return {s: sp.expand(-rest / slope)}
     return None

@@ -7,9 +7,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
+from sympy.core.function import AppliedUndef
 
+from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, holds_at, precision, value
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.reality import certainly_real
+from canon.proof.domain.relations import parts_of
 from canon.proof.refute.refute import Search, look_for_counterexample
 from canon.proof.rungs.cases import eliminations, under_derivatives, without_symbol
 from canon.proof.trees.polynomial_roots import polynomial_in, real_roots
@@ -17,8 +20,9 @@ from canon.proof.trees.replacement import NoValue, replaced
 from canon.proof.trees.sympy_types import by_name
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
+    from flint import acb
     from sympy import Expr, Symbol
     from sympy.logic.boolalg import Boolean
 
@@ -31,6 +35,9 @@ HIGHEST = 256
 
 def search_branches(left: Expr, right: Expr, domain: Domain, deadline: float) -> Search:
     """Look for a counterexample after equalities were solved for real symbols, roots included.
+
+    A counterexample must be a point of the domain as it was given: at its values every condition certainly holds, and
+    no equality is excluded; that the values solve the equalities exactly is what their form shows.
 
     Examples
     --------
@@ -50,9 +57,10 @@ def search_branches(left: Expr, right: Expr, domain: Domain, deadline: float) ->
         except NoValue:
             continue
         symbols = {s for f in (*sides, *values.values()) for s in by_name(f)}
+        points = narrowed.points(symbols, POINTS, deadline=deadline, but_functions=True)
         search = look_for_counterexample(
             *sides,
-            narrowed.points(symbols, POINTS, deadline=deadline, but_functions=True),
+            (point for point in points if _belongs(point, values, domain)),
             highest=HIGHEST,
             deadline=deadline,
             search=search,
@@ -63,6 +71,45 @@ def search_branches(left: Expr, right: Expr, domain: Domain, deadline: float) ->
             found = replace(search.counterexample, point={**search.counterexample.point, **point})
             return replace(search, counterexample=found)
     return search
+
+
+def _belongs(point: Mapping[Symbol, sp.Rational], values: Mapping[Symbol, Expr], domain: Domain) -> bool:
+    """Tell whether a point, completed by the values of the solved symbols, satisfies the conditions as they were given.
+
+    Inequalities must certainly hold; equalities, and g ≥ 0 beside g ≤ 0, must not be excluded.
+    """
+    whole = dict(point)
+    balls: dict[sp.Basic, acb] = {}
+    asked = [c for c in parts_of(domain.conditions) if not c.has(AppliedUndef)]
+    closed = [cast("Expr", c.gts) - cast("Expr", c.lts) for c in asked if isinstance(c, sp.Ge | sp.Le)]
+    with precision(HIGHEST):
+        try:
+            for s, f in values.items():
+                number = cast("Expr", f.xreplace(point))
+                if isinstance(number, sp.Rational):
+                    whole[s] = number
+                else:
+                    balls[s] = value(number, {})
+        except (NotDecided, Undefined, Unmodelled):
+            return False
+        return all(_may_hold(c, whole, dict(balls), closed) for c in asked)
+
+
+def _may_hold(
+    condition: Boolean,
+    point: Mapping[Symbol, sp.Rational],
+    balls: dict[sp.Basic, acb],
+    closed: Sequence[Expr],
+) -> bool:
+    try:
+        return holds_at(condition, point, balls)
+    except NotDecided:
+        if isinstance(condition, sp.Ge | sp.Le):
+            gap = cast("Expr", condition.gts) - cast("Expr", condition.lts)
+            return any(sp.expand(gap + other) == 0 for other in closed)
+        return isinstance(condition, sp.Eq)
+    except (Undefined, Unmodelled):
+        return False
 
 
 def _solved(

@@ -13,6 +13,7 @@ from canon.proof.domain.declarations import declared_complex
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.reality import certainly_real
 from canon.proof.rungs.periods import period_of
+from canon.proof.trees.affine_form import is_affine
 from canon.proof.trees.anatomy import anatomy
 from canon.proof.trees.polynomial import is_left_out, polynomial_factors
 from canon.proof.trees.replacement import KINKED, NoValue, defined_nowhere, replaced
@@ -270,7 +271,10 @@ def without_symbol(domain: Domain, equality: sp.Basic, s: Symbol, solution: Expr
 
 
 def _linear_in(condition: sp.Basic, staying: set[sp.Basic]) -> Iterator[tuple[Symbol, Expr, Expr]]:
-    """Yield each symbol that an equality holds linearly, its slope, and the rest."""
+    """Yield each symbol that an equality holds linearly, its slope, and the rest.
+
+    That is shown by the form of the equality: a step, or atan(tan s), has a constant slope and more solutions than one.
+    """
     if (
         not isinstance(condition, sp.Eq)
         or not isinstance(condition.lhs, sp.Expr)
@@ -279,8 +283,10 @@ def _linear_in(condition: sp.Basic, staying: set[sp.Basic]) -> Iterator[tuple[Sy
         return
     gap = condition.lhs - condition.rhs
     for s in by_name(gap):
-        slope = gap.diff(s)
-        if s in staying or slope == 0 or s in slope.free_symbols:
+        if s in staying or not is_affine(gap, [s]):
+            continue
+        slope = sp.expand(gap).diff(s) if s in gap.diff(s).free_symbols else gap.diff(s)
+        if slope == 0:
             continue
         try:
             yield s, slope, replaced(gap, {s: sp.Integer(0)})

@@ -10,6 +10,7 @@ from canon.mechanics.algebra.substitution import substitute
 from canon.proof.domain.pinched_bounds import with_pinched_bounds
 from canon.proof.domain.relations import parts_of
 from canon.proof.domain.verdict import Undecided
+from canon.proof.trees.affine_form import is_affine
 from canon.proof.trees.sympy_types import free_symbols
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ def _value_of(tie: Expr) -> dict[Symbol, Expr] | None:
     """Return the value that an equation gives to one of its names, alone or as a square of what is positive."""
     for name in sorted(free_symbols(tie), key=str):
         slope = tie.diff(name)
-        if slope.is_nonzero and not slope.has(name):
+        if slope.is_nonzero and not slope.has(name) and is_affine(tie, [name]):
             return {name: sp.cancel(name - tie / slope)}
         of_square = tie.diff(name, 2) / 2
         if name.is_positive and of_square.is_nonzero and not of_square.has(name):
