@@ -12,7 +12,7 @@ from canon.exercise.question.answer import links, other_variables
 from canon.exercise.question.answer_values import without_value
 from canon.exercise.question.deadline import Deadline, Worked
 from canon.exercise.question.question import Determines, Question, Stated, Tells, decide
-from canon.exercise.sheet.key_shapes import faults
+from canon.exercise.sheet.key_shapes import faults, with_plain_names
 from canon.exercise.sheet.kind import named_function
 from canon.exercise.sheet.quantities.given_functions import key_at
 from canon.exercise.sheet.reading import InvalidClaim, Reading
@@ -139,6 +139,7 @@ def examine(claim: Claim) -> Finding:
     given_kind(claim, Claim, "what is judged", "write Claim(id, kind, keys), or ask expect(kind, …)")
     if claim.errors:
         raise InvalidClaim(claim.errors[0])
+    claim = replace(claim, keys=with_plain_names(claim.kind, claim.keys))
     for key, reason in faults(claim.kind, claim.keys):  # a claim made by hand was not looked at before
         raise InvalidClaim(ClaimError(claim.id, key, reason, file=claim.file))
     deadline, reading = Deadline.after(claim.budget), Reading.of(claim)

@@ -162,7 +162,7 @@ class Builder:
         if (symbol := self.scope.symbol(name)) is not None:
             if node.arguments == (
                 syntax.Name(self.scope.time.name, 0, _column(node.arguments)),
-            ) and self.scope.moves(name):
+            ) and self.scope.takes_time(name):
                 return self.value(node, name, symbol)
             self.refuse(
                 node, f"{name} is a declared symbol and can't be applied to anything", "write * for a product"

@@ -14,6 +14,7 @@ from sympy import Expr, Rational
 
 from canon.expression.builder import Builder
 from canon.expression.physics_package import written_out
+from canon.expression.program_marks import without_program_marks
 from canon.expression.prose import without_prose
 from canon.expression.remarks import without_remarks
 from canon.expression.symbols.user_input import given_kind
@@ -25,6 +26,7 @@ from canon.expression.text.scope import Scope
 from canon.expression.text.statement import Statement, plain_statements
 from canon.expression.text.syntax import LanguageError
 from canon.expression.text.units import without_units
+from canon.expression.written_rates import with_primes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -136,7 +138,7 @@ def _syntax(text: str, scope: Scope) -> syntax.Node:
 
 def _without_what_is_around(text: str, scope: Scope) -> str:
     """Return a text without markup, prose and remarks around its formula, every column where it was."""
-    plain = unmarked(text)
+    plain = with_primes(unmarked(without_program_marks(text, scope)), scope)
     bare = without_prose(plain, scope)
     return written_out(without_remarks(plain if bare == plain else unmarked(bare), scope))
 

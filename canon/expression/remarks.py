@@ -40,11 +40,23 @@ _UPRIGHT = re.compile(
     r"(?:\s|~|\\[,;:! ]|\\q{1,2}uad){0,9}\\(?:text|textrm|textit|mathrm)\s?"
     r"\{\s{0,9}\(([A-Za-z][A-Za-z'’ -]{2,60})\)\s{0,9}\}([\s.$]{0,9}|\s*\\[\])]\s*)$"
 )
+_BEHIND_ROW = re.compile(
+    r"(?:~|\\[,;: ]|\\q{1,2}uad){0,9}\\(?:text|textrm|textit|mathrm)\s?"
+    r"\{\s{0,9}\(([A-Za-z][A-Za-z'’ -]{2,60})\)\s{0,9}\}(?=[\s.,]{0,9}\\\\)"
+)
+"""The same behind a row that is not the last."""
 _UNIT = re.compile(r"(?<=[\w)\]}'′″])[ \t]{1,9}\[([^\[\]]{1,40})\][\s.]{0,9}$")
 _LONGEST = 160
 """Characters of a remark that is looked for behind a formula."""
 _NAMED = frozenset(("Newton", "Lagrange", "Hamilton", "Hooke", "Kepler", "EOM", "ODE"))
 """Words that are a remark by themselves."""
+_FORCES = frozenset((
+    "friction", "tension", "drag", "torque", "weight", "reaction", "thrust", "gravity", "normal force",
+    "friction force", "force of friction", "string tension", "tension force", "constraint force", "reaction force",
+    "contact force", "Reibung", "Haftreibung", "Zwangskraft", "Normalkraft", "Fadenkraft", "Gewichtskraft",
+    "frottement", "tension du fil",
+))  # fmt: skip
+"""What forces and multipliers are called, which says nothing of their value."""
 
 
 def without_remarks(text: str, scope: Scope) -> str:
@@ -67,6 +79,8 @@ def without_remarks(text: str, scope: Scope) -> str:
         return text
     text = _without_number_before(text, scope) if "=" in text else text
     text = _without_numbers_behind(text, scope)
+    if "\\\\" in text:
+        text = _BEHIND_ROW.sub(lambda found: _blanked(found, scope), text)
     tail = max(0, len(text) - _LONGEST)
     if (remark := _WORDS.search(text, tail)) and _says_nothing(remark[1], scope):
         return text[: remark.start()]
@@ -148,9 +162,17 @@ def _is_behind(text: str, start: int) -> bool:
     return re.search(r"[\w)\]}'′″]$", text[:start].rstrip(" ~.,")) is not None
 
 
+def _blanked(found: re.Match[str], scope: Scope) -> str:
+    """Return blanks for a remark behind a row of a formula."""
+    nothing = _is_behind(found.string, found.start()) and _says_nothing(found[1], scope)
+    return " " * len(found.group()) if nothing else found.group()
+
+
 def _says_nothing(remark: str, scope: Scope) -> bool:
     """Tell whether words in brackets are a remark: several of those that change nothing, or a name known for it."""
     found = remark.split()
+    if remark.strip() in _FORCES:
+        return not any(_is_known(word, scope) for word in found)
     return (len(found) > 1 and is_prose(found, scope)) or remark.strip() in _NAMED
 
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import Element, SubElement, tostring
 
-from canon.exercise.sheet.key_shapes import faults
+from canon.exercise.sheet.key_shapes import faults, with_plain_names
 from canon.exercise.sheet.kind import COMMON, Shape
 from canon.exercise.sheet.kinds import KINDS
 from canon.exercise.sheet.reading import InvalidClaim, Reading
@@ -86,6 +86,7 @@ def _claim(asked: Mapping[str, Any]) -> Claim:
     if not key and not isinstance(text, str):
         raise _invalid("text", "should be a text; what stands under a key of a claim needs kind and key")
     keys = {**declared, **({key: text} if key else {})}
+    keys = with_plain_names(kind, keys)
     for place, reason in faults(kind, {"id": "text", "kind": kind, **keys}):
         if place in keys or place in ("kind", "of"):
             raise _invalid(place, reason)

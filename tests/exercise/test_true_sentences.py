@@ -182,7 +182,7 @@ MAP = {"q": "q", "p": "p", "new_q": "Q", "new_p": "P", "F": "q*Q", "map": {"Q": 
             {"lhs": "x", "rhs": "x", "parameters": {"x": "real"}, "box": {"x": [2, 1]}},
             "that of x should be two numbers, the smaller one first",
         ),
-        ("euler-lagrange", {"q": "θ", "L": "θ̇**2", "claim": "θ̈"}, "write theta for θ"),
+        ("euler-lagrange", {"q": "π", "L": "π̇**2", "claim": "π̈"}, "write pi for π"),
         (
             "equality-only",
             {"lhs": "x**(1000001/2000000)", "rhs": "x", "parameters": {"x": "positive"}},

@@ -243,12 +243,29 @@ MEANINGS = {
     "cos φ/r²": "cos(phi)/r**2",
     "V'(r - a)": "",
     "V''(2x)": "",
+    "(D@@2)(x)(t)": "x_ddot",
+    "¨x": "x_ddot",
+    "ddot x": "x_ddot",
+    "ddot(theta)": "theta_ddot",
+    "dot x": "x_dot",
+    "x_{tt}": "x_ddot",
+    "m x_{tt} + k x_{t}": "m*x_ddot + k*x_dot",
+    "ddx": "x_ddot",
+    "m*ddx + k*dx": "m*x_ddot + k*x_dot",
+    "∛x": "x**(1/3)",
+    "∜x": "x**(1/4)",
+    "x**(1/3)": "x**(1/3)",
+    "x**(1/4)": "x**(1/4)",
+    "sin 30°": "1/2",
+    r"\sin 30^\circ": "1/2",
+    r"\frac{d}{dt}\frac{\dot x}{m}": "x_ddot/m",
+    "E^2 Sin[x]": "exp(2)*sin(x)",
 }
 """What the page's table of plain text shows, and what it is; empty where the meaning has no plain spelling."""
 OTHER_ROWS = (
     "other names", "abbreviations", "rates by their letters", "prose", "derivations", "numbers of equations",
     "decimal commas", "remarks", "around", "left sides", "chains", "several", "both signs", "the energy",
-    "values of functions", "virtual work",
+    "values of functions", "virtual work", "MATLAB, Maple, Fortran", "what is constant", "vectors",
 )  # fmt: skip
 """Rows about whole answers, which are tested with questions."""
 

@@ -81,6 +81,7 @@ class DeclaredSymbols:
         return Scope(
             {**added, **names}, functions, self.time, signs, implicit, moving, FrozenMapping(other),
             independent=self.kind.independent or self.kind.two_sided, dependent=self._dependent(),
+            timed=frozenset(as_list(keys["multipliers"]) if self.is_names("multipliers") else ()),
         )  # fmt: skip
 
     def _dependent(self) -> frozenset[str]:

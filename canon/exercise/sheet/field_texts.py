@@ -55,7 +55,7 @@ _DRESS = re.compile(
 )
 """What is around a list of components and says nothing of them."""
 _CONSTANT = re.compile(
-    r"[\s$]*(?:\\(?:text|mathrm|textrm|operatorname|mbox|rm)\s*\{?\s*)?const(?:ant)?\.?\s*\}?[\s$.,;]*"
+    r"[\s$]*(?:\\(?:text|mathrm|textrm|operatorname|mbox|rm)\s*\{?\s*)?[ck]onst(?:ante?)?\.?\s*\}?[\s$.,;]*"
 )
 
 

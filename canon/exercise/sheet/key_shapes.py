@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import difflib
 import math
+import re
+import unicodedata
 from collections.abc import Mapping
 from decimal import Decimal
 from itertools import islice
@@ -21,7 +23,7 @@ if TYPE_CHECKING:
 
     from canon.exercise.sheet.kind import Kind
 
-__all__ = ["ASSUMPTIONS", "MAX_NAMES", "declared_names", "faults"]
+__all__ = ["ASSUMPTIONS", "MAX_NAMES", "declared_names", "faults", "plain_name", "with_plain_names"]
 
 ASSUMPTIONS = ("positive", "negative", "nonzero", "real", "integer")
 MAX_FAULTS = 20
@@ -42,6 +44,54 @@ def faults(kind: str, keys: Mapping[str, Any]) -> list[tuple[str, str]]:
     [('rhs', 'missing (an expression)'), ('rsh', 'unknown key for the kind equality-only; is rhs meant?')]
     """
     return list(islice(_faults(kind, keys), MAX_FAULTS))
+
+
+def with_plain_names(kind: str, keys: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the keys of a claim with every name that it declares in plain spelling, ``theta`` for θ.
+
+    Texts read both spellings in any case. Two names that would be one stay as they are, and are refused.
+
+    Examples
+    --------
+    >>> with_plain_names("euler-lagrange", {"q": ["θ₁"], "parameters": {"ω": "positive"}, "L": "θ₁'**2"})
+    {'q': ['theta_1'], 'parameters': {'omega': 'positive'}, 'L': "θ₁'**2"}
+    """
+    shapes = {**COMMON, **(kind_of(kind, keys).shapes if kind in KINDS else {})}
+    named = {key: _with_plain_names(value, shapes.get(key)) for key, value in keys.items()}
+    return keys if all(named[key] is keys[key] for key in keys) else named
+
+
+def plain_name(name: Any) -> Any:
+    """Return a name with Greek letters and small figures in plain spelling; π, which is a number, stays.
+
+    Examples
+    --------
+    >>> plain_name("φ₁"), plain_name("π")
+    ('phi_1', 'π')
+    """
+    if not isinstance(name, str) or name.isascii() or "π" in name:
+        return name
+    plain = "".join(GREEK.get(letter, letter) for letter in name)
+    return re.sub("[₀-₉]+", lambda figures: f"_{unicodedata.normalize('NFKC', figures.group())}", plain)
+
+
+def _with_plain_names(value: Any, shape: Shape | None) -> Any:
+    """Return what stands under a key of names with plain ones; what has none of others is returned as it is."""
+    found = value
+    if shape in _TABLES_OF_NAMES and isinstance(value, Mapping):
+        found = _with_plain_keys(value, shape)
+    elif shape is Shape.VALUES and isinstance(value, list):
+        found = [_with_plain_names(item, shape) for item in value]
+    elif shape is Shape.NAMES:
+        found = [plain_name(name) for name in value] if isinstance(value, list) else plain_name(value)
+    return value if found == value else found
+
+
+def _with_plain_keys(table: Mapping[str, Any], shape: Shape) -> Mapping[str, Any]:
+    """Return a table of names with plain ones, and itself where two of them would be one."""
+    arguments = Shape.NAMES if shape is Shape.FUNCTIONS else None
+    found = {plain_name(name): _with_plain_names(item, arguments) for name, item in table.items()}
+    return found if len(found) == len(table) else table
 
 
 def declared_names(kind: str, keys: Mapping[str, Any]) -> set[str]:
@@ -130,6 +180,10 @@ def _remedy_of_name(wrong: str) -> str:
     return f"; write {plain} for {wrong[:60]}" if _name(plain) else f"; {wrong[:60]!r} is not a name"
 
 
+_TABLES_OF_NAMES = (
+    Shape.ASSUMPTIONS, Shape.DIMENSIONS, Shape.FUNCTIONS, Shape.BOX, Shape.EXPRESSIONS, Shape.VALUES,
+)  # fmt: skip
+"""Shapes of tables by names."""
 _OF_NAMES = (Shape.NAMES, Shape.ASSUMPTIONS, Shape.DIMENSIONS, Shape.FUNCTIONS, Shape.BOX, Shape.EXPRESSIONS)
 
 

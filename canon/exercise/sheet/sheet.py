@@ -15,7 +15,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any, NoReturn
 
-from canon.exercise.sheet.key_shapes import MAX_DIGITS, declared_names, faults
+from canon.exercise.sheet.key_shapes import MAX_DIGITS, declared_names, faults, with_plain_names
 from canon.expression.symbols.input_in_words import counted, given_kind
 from canon.frozen_mapping import FrozenMapping
 from canon.given_file import UnreadableFile, bytes_of, tables_of
@@ -303,7 +303,8 @@ def _sheet(found: Any, file: str, shown: str) -> Sheet:
         raise SheetError(f"{shown}: a list of claims without a claim")
     if len(raw) > MAX_CLAIMS:
         raise SheetError(f"{shown}: {len(raw)} claims, and at most {MAX_CLAIMS} are read; split the sheet")
-    for_all = {key: found[key] for key in _FOR_ALL if key in found} if isinstance(found, dict) else {}
+    for_all = _for_all(found)
+    raw = list(map(_with_plain_names, raw))
     _refuse_idle_dimensions(for_all.get("dimensions"), raw, shown)
     seen: set[str] = set()
     claims: list[Claim] = []
@@ -318,6 +319,16 @@ def _sheet(found: Any, file: str, shown: str) -> Sheet:
         claims.append(claim)
     title = found.get("title", "") if isinstance(found, dict) else ""
     return Sheet(str(title), tuple(claims), file)
+
+
+def _with_plain_names(keys: Any) -> Any:
+    return with_plain_names(str(keys.get("kind", "")), keys) if isinstance(keys, dict) else keys
+
+
+def _for_all(found: Any) -> dict[str, Any]:
+    """Return what stands beside the claims and is meant for all of them."""
+    keys = {key: found[key] for key in _FOR_ALL if key in found} if isinstance(found, dict) else {}
+    return {**with_plain_names("", keys)}
 
 
 def _beside(keys: dict[str, Any], for_all: dict[str, Any]) -> dict[str, Any]:
@@ -365,6 +376,7 @@ def claim_from(keys: Any, number: int = 1, file: str = "") -> Claim:
     id_ = name if isinstance(name, str) and name else f"#{number}"
     said = keys.get("kind")
     kind = said if isinstance(said, str) else ""
+    keys = with_plain_names(kind, keys)
     unnamed = "missing" if name is None else f"{name!r} is no text"
     found = [("id", f"{unnamed} (a name for the claim)")] if id_ != name else []
     found += faults(kind, keys)

@@ -15,8 +15,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from canon.exercise.sheet import field_texts
 from canon.exercise.sheet.equations.matrix_products import components_of_products
+from canon.exercise.sheet.equations.program_lists import lists_in
 from canon.exercise.sheet.equations.sides import Sides
 from canon.exercise.sheet.equations.typed_equations import typed_equations
+from canon.exercise.sheet.equations.vector_operators import components_of_operator
 from canon.exercise.sheet.equations.virtual_work import forces_of_work
 from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.kinds import kind_of
@@ -31,6 +33,7 @@ from canon.exercise.sheet.left_sides import (
     label_of,
 )
 from canon.exercise.sheet.quantities.given_functions import key_at
+from canon.exercise.sheet.quantities.known_vectors import with_angular_momenta
 from canon.exercise.sheet.typed_values import signed_tables, values_under
 from canon.exercise.sheet.written_answers import WrittenAnswers
 from canon.expression.parse import LanguageError, parse_expression
@@ -124,6 +127,7 @@ class _Plain:
         if key in _UNTOUCHED:
             return value
         if key in self.kind.answer:
+            value = value if key in self.kind.several else self.listed(key, value)
             written = WrittenAnswers(self.kind, self.sides, is_list_of_equations=self.has_equations(key))
             value = written.answer(key, value, self.quantity(key))
         if key in self.kind.several:
@@ -151,6 +155,13 @@ class _Plain:
                 return [self.bracket(f"{key}[{i}]", pair) for i, pair in enumerate(_tables(value))]
             case _:
                 return value
+
+    def listed(self, key: str, value: Any) -> Any:
+        """Return what stands under a key with the lists of programs as people write them."""
+        try:
+            return lists_in(value)
+        except LanguageError as error:
+            raise self.fault(key, error) from None
 
     def several(self, key: str, value: Any) -> list[Any]:
         """Return values one by one, each with the unit behind it kept apart."""
@@ -257,6 +268,9 @@ class _Plain:
 
     def written_out(self, place: str, side: Side) -> str:
         """Return the text of an answer, with H put in where J, ω or an adiabatic invariant is said by it."""
+        if place.endswith(".value") and not self.sides.can_read(side):  # -L_z beside {L_x, L_y}
+            said = self.sides.given(place).put_in(side.text)
+            return side.text if said is None else str(said)
         by_energy = ("J", "omega", "I")[: 2 + ("slow" in self.kind.shapes)]  # I = H says nothing elsewhere
         known = key_at(place) not in by_energy or not re.search(r"[HE]", side.text)
         if known or self.sides.can_read(side):
@@ -314,14 +328,33 @@ class _Plain:
         if asked.shown == "I" and label is not None and label.name and not label.rates:
             given = self.scope.declares(label.name) or isinstance(self.of.keys.get(label.name), str)
             asked = asked if given else Quantity("I", ((label.name, 0),))
+        if asked.shown == "I" and label is None and self.is_of_free_name(side):
+            return True
         rate = label is not None and label.rates > 0 and not has_primes(side.text)
         if rate and asked.shown in OTHER_SPELLINGS:
             return False  # dH/dt and Ḣ are no names of what H' is a name of
+        if asked.bracket and label is not None and not label.name:
+            known = with_angular_momenta(self.of.keys, self.scope)
+            return any(is_asked(label, asked, scope) for scope in (self.scope, known))
         return is_asked(label, asked, self.scope)
+
+    def is_of_free_name(self, side: Side) -> bool:
+        """Tell whether a side is a multiple or power of one free name, ``2T`` or ``L²``, constant as that is."""
+        found = re.fullmatch(
+            r"(?:\d{1,3}\*?)?(?P<name>[^\W\d]\w{0,9})(?:\^?\{?[2-9]\}?|[²³⁴]|\*\*[2-9])?", side.said
+        )
+        label = label_of(found["name"]) if found else None
+        if label is None or not label.name or label.rates or self.sides.can_read(side):
+            return False
+        vector = re.search(r"\\(?:vec|mathbf|boldsymbol|bm)", side.text) is not None
+        given = isinstance(self.of.keys.get(label.name), str) and not vector
+        return not (given or self.scope.declares(label.name))
 
     def refuse_lagrangian(self, place: str, text: str, side: Side) -> None:
         """Refuse ``L = …`` as a constant of the motion where L is the Lagrangian of the claim."""
-        if place == "I" and side.said == "L" and isinstance(self.of.keys.get("L"), str):
+        said = re.fullmatch(r"\|?L\|?(?:\^?\{?2\}?|\*\*2|²)?", side.said)
+        free = side.said != "L" and self.is_of_free_name(side)
+        if place == "I" and said and not free and isinstance(self.of.keys.get("L"), str):
             reason = "is L the Lagrangian here, or a name of the constant?"
             raise self.sides.told(
                 place, text, side, reason, "write L_z = …, or only what stands on the right"
@@ -362,6 +395,10 @@ class _Plain:
         """Return the components that stand in one text: in one bracket, or as several equations."""
         if "work" in self.kind.shapes and (forces := forces_of_work(text, self.of.keys["q"], self.scope)):
             return forces
+        if place in ("claim", "X", "Y") and "X" in self.kind.shapes:
+            components = components_of_operator(text, self.of.keys.get("x", []), self.scope)
+            if components:
+                return components
         entries = field_texts.of_matrix(text) or components_of_products(text, self.sides.reads(place, text))
         if entries:
             return entries

@@ -57,12 +57,21 @@ class WrittenAnswers:
         if key in _UP_TO_A_CONSTANT and isinstance(value, str):
             value = self._without_constant(key, value)
         shape = self.kind.shapes.get(key)
+        if shape is Shape.BRACKETS:
+            pairs = value if isinstance(value, list) else [value]
+            return [self._value_put_in(key, pair) for pair in pairs]
         if shape is Shape.EXPRESSIONS and isinstance(value, Mapping):
             return {name: self._put_in(key, text, (entry_asked(key, name),)) for name, text in value.items()}
         if key in self.kind.several or shape not in (Shape.TEXT, Shape.TEXTS):
             return value
         names = components_asked(key, self.sides.keys, self.sides.scope) if shape is Shape.TEXTS else ()
         return self._put_in(key, value, (asked, *names))
+
+    def _value_put_in(self, key: str, pair: Any) -> Any:
+        """Return a bracket whose value is written out, ``2r², where r² = x² + y²``."""
+        if not (isinstance(pair, Mapping) and isinstance(pair.get("value"), str)):
+            return pair
+        return {**pair, "value": self._put_in(key, pair["value"], ())}
 
     def _without_remainders(self, key: str, value: Any) -> Any:
         """Return expansions without ``+ O(x^5)`` and ``+ …``, which is told."""

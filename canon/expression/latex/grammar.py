@@ -249,6 +249,10 @@ class _Build(Transformer_NonRecursive[Token, Any]):
                 "does this factor still belong to the argument before it?",
                 r"write brackets, \cos(\omega t)",
             )
+        if after and after.kind == "SLASH" and self.meaning.ends_with_derivative_of_fraction(items):
+            self.meaning.refuse(
+                after.column, "does this divide the derivative or the fraction?", "write brackets"
+            )
 
     def with_derivatives(self, children: list[Any]) -> list[Any]:
         r"""Return pieces and signs, a derivative with a slash, ``d\theta/dt``, made one piece."""

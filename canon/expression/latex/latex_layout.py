@@ -39,6 +39,11 @@ _PRINTED_SUBS = re.compile(
     rf"\s*(?P=x)=(?P<place>{_INSIDE}{{1,2000}})\}}\}}"
 )
 """How SymPy prints the derivative of a function at a place."""
+_ENTRY = r"((?:[^&\\{}]|\\[^\\&]|\{[^{}]{0,99}\}){1,200})"
+_DETERMINANT = re.compile(
+    rf"\\begin\{{vmatrix\}}{_ENTRY}&{_ENTRY}\\\\{_ENTRY}&{_ENTRY}(?:\\\\\s{{0,9}})?\\end\{{vmatrix\}}"
+)
+"""Determinants of two rows and two columns."""
 _BROKEN_BRACKET = re.compile(
     r"\\right\s*\.(?:\s|&|~|\\\\|\\(?:q?quad|nonumber|notag)(?![A-Za-z])|\\[,;:!])*\\left\s*\."
 )
@@ -50,11 +55,12 @@ _DELIMITER = re.compile(r"\$\$?|(?<!\\)\\[\[\]()]")
 _CLOSING = {"$": "$", "$$": "$$", "\\[": "\\]", "\\(": "\\)"}
 _EQUALS_FIRST = re.compile(r"(?:\s|\\(?:display|text)style(?![A-Za-z])){0,40}=")
 _EQUALS_LAST = re.compile(r"=\s*$")
-_GAP = re.compile(r"[\s,;.:]*(?:and|und|et)?[\s,;.:]*")
+_GAP = re.compile(r"[\s,;.:]*(?:and|und|et|i\.\s?e\.|d\.\s?h\.|that is|hence|thus|so)?[\s,;.:]*")
 _BRACE = re.compile(r"\\.|[{}]", re.DOTALL)
 _BRACE_OR_EQUALS = re.compile(r"\\.|[{}=]", re.DOTALL)
 _STANDS_ALONE = re.compile(
-    rf"(?:[\s.,;{ROW}{PART}]|\\(?:q?quad|[,;:! ]))*(?:$|\\[a-z]+arrow|\\implies|(?<=[{ROW}{PART};]))"
+    rf"(?:[\s.,;{ROW}{PART}]|\\(?:q?quad|[,;:! ]))*(?:$|\\[a-z]+arrow|\\implies|(?<=[{ROW}{PART};])"
+    rf"|(?:(?<=[^\\],)|(?<=quad))(?=[^{ROW}{PART}=]{{1,60}}=))"
 )
 _MOST_BOXES = 20
 _BLANK = r"(?:\s|~|&|\\q?quad(?![A-Za-z])|\\[,;:! ])*"
@@ -98,6 +104,8 @@ def without_layout(text: str) -> str:
         bare = _PRINTED_SUBS.sub(_primed, bare)
     bare = _PRINTED_ATAN2.sub(lambda m: r"\operatorname{atan2}".ljust(len(m.group())), bare)
     bare = _BROKEN_BRACKET.sub(_blanks, bare)
+    if "\\begin{vmatrix}" in bare:
+        bare = _DETERMINANT.sub(_worked_out, bare)
     if "\\begin" in bare or "\\end" in bare:
         bare = _without_displays(text, bare)
     return _unboxed(_rows(bare))
@@ -107,6 +115,12 @@ def _primed(printed: re.Match[str]) -> str:
     """Return the derivative at a place with primes, printed as SymPy prints calls, and as long as it was."""
     primes = "'" * int(printed[1] or 1)
     return rf"{printed['f']}{primes}\left({printed['place']}\right)".ljust(len(printed.group()))
+
+
+def _worked_out(found: re.Match[str]) -> str:
+    """Return a determinant as the difference of two products, as long as it was."""
+    a, b, c, d = (entry.strip() for entry in found.groups())
+    return rf"[({a})\cdot({d})-({b})\cdot({c})]".ljust(len(found.group()))
 
 
 def _unboxed(text: str) -> str:

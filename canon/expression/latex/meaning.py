@@ -23,6 +23,7 @@ from canon.expression.latex.pieces import (
     Piece,
     Powered,
     is_function,
+    is_in_degrees,
     is_minus_one,
     items_of,
     mark_of,
@@ -199,6 +200,8 @@ class Meaning:
                 break
             if not numeric and not self.ends.goes_on(taken, items[end]):
                 self._open(items[end], taken, function)
+            if taken and is_in_degrees(items[end - 1]):
+                self._open(items[end], taken, function)
             node, end = self._of_argument(items, end)
             taken.append(node)
             numeric = numeric and self.ends.is_numeric(node)
@@ -207,7 +210,7 @@ class Meaning:
         last = items[end - 1]
         if isinstance(last, Powered) and not isinstance(last.base, Number | Mark):
             self._ambiguous_power(last, function)
-        if numeric and end < len(items):
+        if numeric and end < len(items) and not is_in_degrees(items[end - 1]):
             told = f"does this still belong to the argument of {function.name}?"
             self.refuse(items[end].column, told, "write brackets")
         whole = Product(tuple((False, node) for node in taken), taken[0].column)
@@ -242,12 +245,20 @@ class Meaning:
 
     def leaves_open(self, items: tuple[Piece, ...]) -> bool:
         r"""Whether what follows ``\cdot`` could belong to the argument that ends here, as in ``\cos\omega\cdot t``."""
+        if items and is_in_degrees(items[-1]):
+            return False
+        if self.ends_with_derivative_of_fraction(items):
+            return True
         argument = [
             self.node(item) for item in bare_argument(items) if not isinstance(item, Mark | Head | Operator)
         ]
         return bool(argument) and not (
             any(map(self.ends.moves, argument)) or self.ends.is_angle(argument[-1])
         )
+
+    def ends_with_derivative_of_fraction(self, items: tuple[Piece, ...]) -> bool:
+        """Whether pieces end with an operator such as d/dt and a fraction, which what follows may belong to."""
+        return len(items) > 1 and isinstance(items[-1], LatexFraction) and isinstance(items[-2], Operator)
 
     def _called(self, head: Head, function: Function, argument: Node, after: Node | None) -> Node:
         r"""Return a built-in function of its argument, raised as ``\sin^2`` or after the brackets."""
@@ -333,6 +344,8 @@ class Meaning:
                 return self.derivatives.of(operator, operand), end
         if isinstance(following, Group):
             return self.derivatives.of(operator, self.node(following)), at + 2
+        if isinstance(following, LatexFraction) and at + 2 == len(items):
+            return self.derivatives.of(operator, following.node), at + 2
         name = following and unbraced(following)
         along = operator if operator.total else self.derivatives.along_the_motion(operator)
         whole = operator.total or at + 2 == len(items)

@@ -30,7 +30,9 @@ __all__ = [
     "Operator",
     "Piece",
     "Powered",
+    "in_degrees",
     "is_function",
+    "is_in_degrees",
     "is_minus_one",
     "items_of",
     "mark_of",
@@ -76,11 +78,12 @@ class Head:
 
 @dataclass(frozen=True, slots=True)
 class LatexFraction:
-    """A fraction; ``numbers`` says whether it is one of two numbers."""
+    """A fraction; ``numbers`` says whether it is one of two numbers, ``degrees`` whether it is an angle in degrees."""
 
     node: Product
     numbers: bool
     column: int
+    degrees: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,6 +104,13 @@ class FactorRun:
 
 
 Piece: TypeAlias = Node | Group | Powered | Head | LatexFraction | Operator | FactorRun | Mark
+
+
+def in_degrees(number: Number) -> LatexFraction:
+    r"""Return the angle of so many degrees, ``30^\circ``."""
+    column = number.column
+    factors = ((False, number), (False, Name("pi", 0, column)), (True, Number(180, 1, column)))
+    return LatexFraction(Product(factors, column), numbers=True, column=column, degrees=True)
 
 
 def is_function(piece: Piece) -> bool:
@@ -128,6 +138,11 @@ def unbraced(piece: Piece) -> Piece:
     while isinstance(piece, Group) and piece.braces:
         piece = piece.inner
     return piece
+
+
+def is_in_degrees(piece: Piece) -> bool:
+    """Whether a piece is an angle in degrees, with which an argument ends."""
+    return isinstance(piece, LatexFraction) and piece.degrees
 
 
 def items_of(piece: Piece) -> tuple[Piece, ...]:

@@ -21,11 +21,15 @@ def without_time(items: tuple[Piece, ...], scope: Scope) -> tuple[Piece, ...]:
         base, exponent = (item.base, item.exponent) if isinstance(item, Powered) else (item, None)
         before = found[-1] if found else None
         name = before.base if isinstance(before, Powered) and exponent is None else before
-        if not (isinstance(name, Name) and is_time(base, scope) and has_rate_or_is_momentum(name, scope)):
+        if not (isinstance(name, Name) and is_time(base, scope) and _takes_time(name, scope)):
             found.append(item)
         elif exponent is not None:
             found[-1] = Powered(name, exponent, name.column)
     return tuple(found)
+
+
+def _takes_time(name: Name, scope: Scope) -> bool:
+    return has_rate_or_is_momentum(name, scope) or name.text in scope.timed
 
 
 def is_time(piece: Piece, scope: Scope) -> bool:

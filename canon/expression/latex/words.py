@@ -23,7 +23,7 @@ from canon.expression.latex.names import (
     spellings,
     stems,
 )
-from canon.expression.latex.pieces import Group, LatexFraction, Operator
+from canon.expression.latex.pieces import Group, LatexFraction, Operator, in_degrees
 from canon.expression.latex.printed_forms import (
     CLAUSE,
     CONDITION,
@@ -53,6 +53,9 @@ _SPACE = re.compile(
 _THIN = re.compile(r"\s|\\[!/]|\\displaystyle|\\negthinspace|\\qty|\\(?:no)?limits")
 """The spaces that show no gap in print."""
 _NUMBER = re.compile(r"[0-9]+(?:\.[0-9]+)?|\.[0-9]+")
+_DEGREES = re.compile(
+    r"(?:\s|\\[,!;:])*(?:\^\s*(?:\\circ(?![A-Za-z])|\{\s*\\circ\s*\})|\\degree(?![A-Za-z])|°)(?!\s*(?:\\text|\\mathrm|C))"
+)
 _FIGURES = re.compile(r"[0-9]+(?![.0-9])")
 _RUN = re.compile(r"[A-Za-z][A-Za-z0-9]*")
 _COMMAND = re.compile(r"\\(?:[A-Za-z]+|.)", re.DOTALL)
@@ -144,7 +147,11 @@ class _Reader:
             self.refuse(column, f"a number of more than {syntax.MAX_DIGITS} digits")
         self.at += len(digits)
         whole, _, fraction = digits.partition(".")
-        self.out.emit("ATOM", digits, column, Number(int(whole + fraction), 10 ** len(fraction), column))
+        number = Number(int(whole + fraction), 10 ** len(fraction), column)
+        degrees = None if self.out.singles else _DEGREES.match(self.text, self.at, self.end)
+        if degrees:
+            self.at = degrees.end()
+        self.out.emit("ATOM", digits, column, in_degrees(number) if degrees else number)
 
     def letters(self, run: str) -> None:
         """Read names in roman letters, with subscript and primes where they are not a bare argument."""

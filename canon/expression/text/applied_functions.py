@@ -7,6 +7,7 @@ and ``sin x^2`` are refused, with both readings.
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from canon.expression.text.declared_names import function_name
@@ -38,6 +39,8 @@ _INVERSE = {"sin": "asin", "cos": "acos", "tan": "atan", "cot": "acot", "sinh": 
 _BARE = frozenset((*_INVERSE, *_INVERSE.values(), "sec", "csc", "log", "exp", "sqrt", "atan"))
 """Functions that may stand without brackets."""
 _MAX_CHAIN = 4
+_OF_MATHEMATICA = re.compile(r"\\\[[A-Z]|(?<![A-Za-z])(?:Sin|Cos|Tan|Sinh|Cosh|Exp|Log|Sqrt|ArcTan)\[")
+"""What only Mathematica writes, where E is Euler's number."""
 _CONSTANTS = {"%pi": "pi", "Pi": "pi", "%i": "I", "π": "pi"}
 
 
@@ -235,7 +238,8 @@ def _exponential(reader: FactorParser, token: Token) -> Node | None:
 
 def _raised_e(reader: FactorParser, token: Token, exponent: Node) -> Node:
     """Return exp of an exponent; with a bare number as exponent, e may be a name that is not declared."""
-    if isinstance(exponent, Number) and token.text != "%e":
+    of_mathematica = token.text == "E" and _OF_MATHEMATICA.search(reader.text) is not None
+    if isinstance(exponent, Number) and token.text != "%e" and not of_mathematica:
         shown = f"{exponent.numerator}"[:9]
         raise reader.fault(
             WHICH_E if token.text == "e" else "is E Euler's number, or a name that is not declared?",

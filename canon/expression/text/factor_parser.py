@@ -13,6 +13,7 @@ from canon.expression.text.syntax import (
     Node,
     Number,
     Parser,
+    Power,
     Tuple,
 )
 from canon.expression.text.tokens import MAX_TOKENS, Token, tokens
@@ -23,10 +24,12 @@ if TYPE_CHECKING:
 
     from canon.expression.text.scope import Scope
 
-__all__ = ["CLOSING", "FactorParser"]
+__all__ = ["CLOSING", "ROOTS", "FactorParser"]
 
 CLOSING = {"(": ")", "[": "]", "{": "}"}
 """The bracket that ends one."""
+ROOTS = {"√": 2, "∛": 3, "∜": 4}
+"""Signs of roots."""
 
 
 class FactorParser(Parser):
@@ -46,7 +49,7 @@ class FactorParser(Parser):
         """Tell whether a factor can begin with a token."""
         if token.kind in ("number", "vulgar", "name", "string"):
             return True
-        return token.text in ("(", "[", "{", "√", "∂") or (token.text == "|" and not self.bars)
+        return token.text in ("(", "[", "{", *ROOTS, "∂") or (token.text == "|" and not self.bars)
 
     def raised(self, token: Token) -> Node:
         """Return the exponent that small figures spell."""
@@ -67,12 +70,12 @@ class FactorParser(Parser):
         return node
 
     def root(self, sign: Token) -> Node:
-        """Read what stands under √: a bracket, a number or a name."""
+        """Read what stands under √, ∛ or ∜: a bracket, a number or a name."""
         self.deeper(sign)
         radicand = self.atom()
         self.depth -= 1
         last = self.tokens[self.at - 1]
-        bracketed = last.text in (")", "]", "}")
+        bracketed, degree = last.text in (")", "]", "}"), ROOTS.get(sign.text, 2)
         follows = self.token
         number = isinstance(radicand, Number)
         more = (
@@ -81,8 +84,11 @@ class FactorParser(Parser):
             or follows.kind == "super"
         )
         if not bracketed and more:
-            raise self.fault("how far does the root reach?", "write sqrt( ) around what is under it", sign)
-        return Call("sqrt", (radicand,), sign.column)
+            remedy = "write sqrt( ) around what is under it" if degree == 2 else "write brackets around it"
+            raise self.fault("how far does the root reach?", remedy, sign)
+        if degree == 2:
+            return Call("sqrt", (radicand,), sign.column)
+        return Power(radicand, Number(1, degree, sign.column), sign.column)
 
     def modulus(self, bar: Token) -> Node:
         """Read what stands between two bars."""

@@ -216,7 +216,7 @@ class Reader(FactorParser):
         """Read a number, a name, a call or a bracket."""
         token = self.token
         match token.text:
-            case "√":
+            case "√" | "∛" | "∜":
                 self.at += 1
                 return self.root(token)
             case "∂" if (node := derivative(self)) is not None:
@@ -308,7 +308,7 @@ class Reader(FactorParser):
 
     def at_time(self, name: Token) -> bool:
         """Tell whether ``(t)`` follows what moves."""
-        if not (self.scope.moves(name.text) or name.primes) or self.at + 2 >= len(self.tokens):
+        if not (self.scope.takes_time(name.text) or name.primes) or self.at + 2 >= len(self.tokens):
             return False
         opening, inside, closing = self.tokens[self.at : self.at + 3]
         return (

@@ -58,6 +58,8 @@ class Scope:
         Whether a derivative of one symbol by another is plainly 0, as in brackets; elsewhere it is asked about.
     dependent
         Names of what depends on other names in a way that is not written, as the energy on q and p and an action on it.
+    timed
+        Names without rates that may have the time behind them all the same: multipliers, ``λ[t]``.
 
     Examples
     --------
@@ -79,6 +81,7 @@ class Scope:
     quadratures: bool = False
     independent: bool = True
     dependent: frozenset[str] = frozenset()
+    timed: frozenset[str] = frozenset()
 
     def __hash__(self) -> int:
         return hash(
@@ -92,6 +95,7 @@ class Scope:
                 self.quadratures,
                 self.independent,
                 self.dependent,
+                self.timed,
             )
         )
 
@@ -108,6 +112,10 @@ class Scope:
         """Tell whether a name stands for what changes in time, or for the time."""
         moving = isinstance(self.symbol(name), Coordinate | Momentum | Rate)
         return moving or name in self.moving or name == self.time.name
+
+    def takes_time(self, name: str) -> bool:
+        """Tell whether the time may stand behind a name, ``x(t)``, as its argument."""
+        return name in self.timed or (self.moves(name) and name != self.time.name)
 
     def symbol(self, name: str) -> Symbol | None:
         """Return the symbol of a declared name or of a coordinate's rate, None for any other name."""

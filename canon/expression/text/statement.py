@@ -49,7 +49,11 @@ class Statement:
 
 _OPEN, _CLOSE = "([{⟨", ")]}⟩"
 _EQUALS = re.compile(r"(?<![<>!:=≠])(?:==|:=|=|≡|≔)(?![=>])")
-_ENDS = re.compile(r"[;\n]|⇒|⟹|∴|=>|(?<=\s)(?:and|where|with|mit|wobei|avec|où|donde)(?=\s)")
+_ENDS = re.compile(
+    r"[;\n]|[⇒⟹∴⇔⟺]|<=>|=>|(?<=\s)(?:and|where|with|mit|wobei|avec|où|donde)(?=\s)"
+    r"|(?<=[,;.]\s)(?:i\.\s?e\.,?|d\.\s?h\.|that is,?|(?:or,? )?equivalently,?|es decir,|c['’]est-à-dire"
+    r"|hence|thus|so)(?=\s)"
+)
 MAX_SIDES = 100
 """Most sides in one field."""
 NAME_BEFORE_SIGN = (
@@ -63,7 +67,7 @@ _IN_BRACKETS = re.compile(rf"\s\({NAME_BEFORE_SIGN}=[^=]{{1,90}}\)[\s.]*$")
 def plain_statements(text: str) -> tuple[Statement, ...]:
     """Return the statements of a text that is no LaTeX.
 
-    They are parted by ``;``, new lines, ``and``, ``where``, ``with``, ``⇒``, and commas between equations,
+    They are parted by ``;``, new lines, ``and``, ``where``, ``with``, ``i.e.``, ``⇒``, and commas between equations,
     not inside brackets.
 
     Raises

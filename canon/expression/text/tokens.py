@@ -106,7 +106,7 @@ _TOKEN = re.compile(
     rf"|(?P<super>[⁺⁻]?[{_SUPER}]+|⁻?ⁿ)"
     r"|(?P<half>S\.Half(?!\w))"
     rf"|(?P<name>_{{0,2}}{_LETTER}{_AFTER}*|%(?:pi|e|i)(?!\w))"
-    r"|(?P<operator>\.diff(?=\()|\*\*|<=|>=|!=|==|:=|[-+*/^()\[\]{}|<>=,−–·×⋅∙•∗÷∕⁄√≤≥≠∂°])"
+    r"|(?P<operator>\.diff(?=\()|\*\*|<=|>=|!=|==|:=|[-+*/^()\[\]{}|<>=,−–·×⋅∙•∗÷∕⁄√∛∜≤≥≠∂°])"
 )
 GREEK = {
     "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "ε": "epsilon", "ζ": "zeta", "η": "eta", "θ": "theta",

@@ -40,7 +40,7 @@ _BRACKET = re.compile(r"\s{0,3}\[([^\[\]]{0,80})\]")
 _UPRIGHT = re.compile(
     r"(?:\\[,;: ]|~|\s){0,5}\\(?:mathrm|text|textrm|unit|si)\s?\{([^{}]{0,40}(?:\{[^{}]{0,5}\}[^{}]{0,20}){0,4})\}"
 )
-_FACTOR = re.compile(r"\s{0,9}[^\W_]|\s{0,9}[(\[√]")
+_FACTOR = re.compile(r"\s{0,9}[^\W_]|\s{0,9}[(\[√∛∜]")
 _LETTERS = re.compile(r"[A-Za-zΩ]+")
 _REMEDY = f"SI units without prefixes can stand there: {', '.join(sorted(COHERENT))}; or leave it out"
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     _Check = Callable[[str], object]
+    _Known = Sequence[tuple[int, int, tuple[str, ...]]]
 
 __all__ = ["components_of_products", "equations_of_products"]
 
@@ -49,7 +50,7 @@ class _Matrix:
         return len(self.rows), len(self.rows[0])
 
 
-def equations_of_products(text: str, check: _Check) -> list[str]:
+def equations_of_products(text: str, check: _Check, known: _Known = ()) -> list[str]:
     r"""Return the equations of the components of ``M v + w = 0``; nothing where a side is no sum of vectors.
 
     Parameters
@@ -58,6 +59,8 @@ def equations_of_products(text: str, check: _Check) -> list[str]:
         The field.
     check
         Reads one factor or entry, at its columns, and raises the error that is told of it.
+    known
+        Vectors that are written by a letter, ``\nabla V``: where each begins and ends, and its components.
 
     Examples
     --------
@@ -70,7 +73,7 @@ def equations_of_products(text: str, check: _Check) -> list[str]:
     if len(signs) != 1:
         return []
     left, right = text[: signs[0].start()], " " * signs[0].end() + text[signs[0].end() :]
-    sides = [_vector(side, check) for side in (left, right)]
+    sides = [_vector(side, check, known) for side in (left, right)]
     lengths = {len(side) for side in sides if side}
     if len(lengths) != 1 or not all(
         side or _ZERO.fullmatch(said) for side, said in zip(sides, (left, right), strict=True)
@@ -92,16 +95,16 @@ def components_of_products(text: str, check: _Check) -> list[str]:
     if len(signs) > 1 or (signs and not is_name_of_matrix(text[: signs[0].start()])):
         return []
     begin = signs[0].end() if signs else 0
-    return [_mark(text) + one for one in _vector(" " * begin + text[begin:], check)]
+    return [_mark(text) + one for one in _vector(" " * begin + text[begin:], check, ())]
 
 
 def _mark(text: str) -> str:
     return "$" if "\\" in text or "$" in text else ""
 
 
-def _vector(text: str, check: _Check) -> list[str]:
+def _vector(text: str, check: _Check, known: _Known) -> list[str]:
     """Return the components of a side as text; nothing where it is no sum of vectors."""
-    matrices = _matrices(text)
+    matrices = sorted((*_matrices(text), *_by_letters(text, known)), key=lambda matrix: matrix.begin)
     if not matrices or sum(len(m.rows) * len(m.rows[0]) for m in matrices) > _MOST_ENTRIES * _MOST_MATRICES:
         return []
     found: list[list[str]] = []
@@ -116,6 +119,16 @@ def _vector(text: str, check: _Check) -> list[str]:
     if len(shapes) != 1 or min(min(shapes)) != 1 or len(found[0]) == 1:
         return []
     return [" + ".join(f"({part})" for part in parts) for parts in zip(*found, strict=True)]
+
+
+def _by_letters(text: str, known: _Known) -> list[_Matrix]:
+    """Return the vectors of one side that are written by letters, as columns."""
+    mark = _mark(text) or " "
+    return [
+        _Matrix(tuple((" " * (begin - 1) + mark + entry,) for entry in entries), begin, end)
+        for begin, end, entries in known
+        if end <= len(text) and text[begin:end].strip()
+    ]
 
 
 def _terms(text: str, matrices: Sequence[_Matrix]) -> list[tuple[int, int]]:

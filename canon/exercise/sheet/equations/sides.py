@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from canon.exercise.sheet.field_texts import says_constant
 from canon.exercise.sheet.kind import BESIDE
 from canon.exercise.sheet.left_sides import is_action, is_definition, label_of
 from canon.exercise.sheet.quantities.given_functions import GivenFunctions, key_at
@@ -88,12 +89,14 @@ class Sides:
 
     def _is_own_name(self, side: Side) -> bool:
         label = label_of(side.said)
-        if label is None or not label.name or label.rates or label.arguments:
+        if label is None or not label.name or label.rates or label.arguments or says_constant(side.text):
             return False
         if not self.can_read(side):
-            said = {key: value for key, value in self.keys.items() if key not in BESIDE}
-            names = re.findall(rf"(?<!\w){re.escape(side.said)}(?!\w)", repr(said))
-            return len(names) == 1
+            said = repr({key: value for key, value in self.keys.items() if key not in BESIDE})
+            typed = repr(side.text.strip(" $"))[1:-1]
+            spellings = {side.said} if re.search(r"\s", typed) else {side.said, typed}
+            names = [re.findall(rf"(?<!\w){re.escape(name)}(?!\w)", said) for name in spellings]
+            return sum(map(len, names)) == 1
         return False
 
     def can_read(self, side: Side) -> bool:

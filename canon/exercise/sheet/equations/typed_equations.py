@@ -1,7 +1,7 @@
 """Typed equations: a list of them as people write it, numbers beside them, several in one text, chains taken apart.
 
 ``d/dt(∂L/∂θ̇) - ∂L/∂θ = m l² θ̈ + m g l sin θ = 0`` says where its last equation comes from; alone, Lagrange's equation
-is true of every system, and no answer.
+is true of every system, and no answer. ``m r² φ̇ = const.`` says that its rate along the motion is zero.
 """
 
 from __future__ import annotations
@@ -15,6 +15,9 @@ from canon.exercise.sheet.equations.equation_numbers import without_numbers
 from canon.exercise.sheet.equations.matrix_products import equations_of_products
 from canon.exercise.sheet.equations.vector_equations import vector_equations
 from canon.exercise.sheet.left_sides import is_definition
+from canon.exercise.sheet.quantities.given_functions import key_at
+from canon.exercise.sheet.quantities.known_vectors import vectors_in
+from canon.expression.text.notation import is_latex
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -58,7 +61,12 @@ def _of_text(place: str, text: Any, known: Sides) -> list[Any]:
     others = (
         statements if len(statements) == 1 else [s for s in statements if not known.given(place).restates(s)]
     )
-    said = [_chain(place, statement, known) for statement in others]
+    said = [
+        _conserved(place, statement.sides, known)
+        if key_at(place) == "claim" and _says_conserved(statement.sides, known)
+        else _chain(place, statement, known)
+        for statement in others
+    ]
     refused = [each for each in said if isinstance(each, _Refused)]
     for each in refused:
         if not each.is_true or len(refused) == len(said):
@@ -83,14 +91,15 @@ class _Refused:
 
 def _is_plain(statements: Sequence[Statement], known: Sides) -> bool:
     """Tell whether a text is one equation of two sides, none of them a definition."""
-    if len(statements) != 1 or len(statements[0].sides) > 2:
+    if len(statements) != 1 or len(statements[0].sides) > 2 or _says_conserved(statements[0].sides, known):
         return False
     return not any(is_definition(side.said, "claim", known.scope) for side in statements[0].sides)
 
 
 def _products(place: str, text: str, known: Sides) -> list[str]:
     """Return the equations of the components where the sides are sums and products of matrices."""
-    return equations_of_products(text, known.reads(place, text)) or [text]
+    vectors = vectors_in(text, known.keys, known.scope)
+    return equations_of_products(text, known.reads(place, text), vectors) or [text]
 
 
 def _chain(place: str, statement: Statement, known: Sides) -> list[str] | _Refused:
@@ -111,6 +120,23 @@ def _chain(place: str, statement: Statement, known: Sides) -> list[str] | _Refus
         is_true = all(map(known.can_read, rest)) if said else known.given(place).is_lagranges_equation(sides)
         return _Refused(unknown or sides[0], is_true and unknown is None, *_no_equation(said, unknown))
     return equations
+
+
+def _says_conserved(sides: Sequence[Side], known: Sides) -> bool:
+    """Tell whether a chain ends with ``= const.``."""
+    free = not known.scope.declares("const")
+    return len(sides) > 1 and free and field_texts.says_constant(sides[-1].text)
+
+
+def _conserved(place: str, sides: Sequence[Side], known: Sides) -> list[str]:
+    """Return the equations of ``a = b = const.`` along the motion: a = b, and db/dt = 0."""
+    sides = known.without_own_names(place, sides)[:-1]
+    last = sides[-1]
+    known.reads(place, last.text)(last.text)  # an error is told where it was typed
+    said = last.text.strip().lstrip("$")
+    latex = is_latex(last.text)
+    rate = rf"$\frac{{d}}{{dt}}\left({said}\right) = 0" if latex else f"d/dt({said}) = 0"
+    return [*(field_texts.equation_between(a, b) for a, b in pairwise(sides)), rate]
 
 
 def _worked_out(place: str, sides: Sequence[Side], rest: Sequence[Side], known: Sides) -> list[str]:

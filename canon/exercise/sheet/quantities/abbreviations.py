@@ -24,6 +24,7 @@ from canon.expression.symbols.symbol import (
 from canon.expression.text.declared_names import key_of
 from canon.expression.text.scope import split
 from canon.expression.text.syntax import Call, Name, parts
+from canon.expression.text.tokens import GREEK
 from canon.expression.text.vocabulary import CONSTANTS, OTHER_NAMES
 
 if TYPE_CHECKING:
@@ -231,7 +232,7 @@ def _is_asked(side: Side, is_asked: Callable[[Label], bool]) -> bool:
 def _by_its_rate(rate: Expr, statement: Statement, scope: Scope) -> _Definition | None:
     """Return the name that ``x' = v`` or ``x' = p/m`` defines; None where it is not one name times something."""
     right = statement.sides[1]
-    words = dict.fromkeys(re.findall(r"(?<!\\)\b[A-Za-z]\w{0,9}", right.text))
+    words = dict.fromkeys(map(_spelled, re.findall(r"\\?[^\W\d_]\w{0,9}", right.text)))
     for word in [word for word in words if _new_name(word, scope, lambda _: False)][:_MOST]:
         symbol = sp.Symbol(word, real=True)
         try:
@@ -243,6 +244,13 @@ def _by_its_rate(rate: Expr, statement: Statement, scope: Scope) -> _Definition 
             found = _Definition(word, statement, rate / factor, moves=True, by_rate=True)
             return None if _moves_in(factor, scope) else found
     return None
+
+
+def _spelled(word: str) -> str:
+    r"""Return the plain name of a word, ``omega`` for ω and ``\omega``; a command of LaTeX is no name."""
+    letter = word.lstrip("\\")
+    label = label_of(letter)
+    return "" if label is None or (letter != word and letter not in GREEK.values()) else label.name
 
 
 def _with(statement: Statement, scope: Scope) -> str | None:

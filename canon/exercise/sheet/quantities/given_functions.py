@@ -13,6 +13,11 @@ from typing import TYPE_CHECKING, Any, cast
 import sympy as sp
 
 from canon.exercise.sheet.left_sides import is_definition
+from canon.exercise.sheet.quantities.known_vectors import (
+    with_angular_momenta,
+    with_place_of_body,
+    without_cross_products,
+)
 from canon.expression.parse import LanguageError, parse_expression
 from canon.expression.symbols.symbol import time_derivative, velocity
 
@@ -128,21 +133,42 @@ class GivenFunctions:
         >>> GivenFunctions({"L": "v**2/2"}, "R", Scope({"v": sp.Symbol("v")})).put_in("-L")
         -v**2/2
         """
-        given = [name for name in _BY_LETTER if self._gives(name)]
-        if not given or len(text.strip()) > _LONGEST or _INTEGRAL.search(text):
+        if len(text.strip()) > _LONGEST or _INTEGRAL.search(text):
             return None
         try:
-            letters = {name: parse_expression(self.keys[name], self.scope) for name in given}
-            if "H" in letters and not self.scope.declares("E") and "E" not in self.keys:
-                letters["E"] = letters["H"]
+            letters = self._letters()
+            known = with_place_of_body(self.keys, self.scope)
+            known = with_angular_momenta(self.keys, known) if self.asked == "pairs" else known
             plain, slopes = self._without_slopes(text, letters)
-            put = {name: (sp.Dummy(name, real=True), f) for name, f in {**letters, **slopes}.items()}
-            names = {**self.scope.names, **{name: symbol for name, (symbol, _) in put.items()}}
-            said = parse_expression(plain, replace(self.scope, names=names))
+            plain, crosses = without_cross_products(plain, self.keys, self.scope)
+            put = {
+                name: (sp.Dummy(name, real=True), f) for name, f in {**letters, **slopes, **crosses}.items()
+            }
+            if not put and known is self.scope:
+                return None
+            names = {**known.names, **{name: symbol for name, (symbol, _) in put.items()}}
+            said = parse_expression(plain, replace(known, names=names))
         except LanguageError:
             return None
         found = said.xreplace(dict(put.values()))
-        return found if found != said and isinstance(found, sp.Expr) else None
+        made = found != said or not self._can_read(text)
+        return found if made and isinstance(found, sp.Expr) else None
+
+    def _letters(self) -> dict[str, Expr]:
+        """Return the functions that the claim gives, by their letters; F is Rayleigh's function beside dE/dt."""
+        given = [name for name in _BY_LETTER if self._gives(name)]
+        given += ["F"] if self.asked == "energy_rate" and self._gives("F") else []
+        letters = {name: parse_expression(self.keys[name], self.scope) for name in given}
+        if "H" in letters and not self.scope.declares("E") and "E" not in self.keys:
+            letters["E"] = letters["H"]
+        return letters
+
+    def _can_read(self, text: str) -> bool:
+        try:
+            parse_expression(text, self.scope)
+        except LanguageError:
+            return False
+        return True
 
     def restates(self, statement: Statement) -> bool:
         """Tell whether a statement says again what the claim gives, ``L = T - V = …`` before an equation of motion."""
