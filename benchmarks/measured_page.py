@@ -364,8 +364,8 @@ SECTIONS = {
         ),
     ),
     "peers_losing": Section(
-        "Where steps have to vary by many powers of ten, where forces of a tree suffice, or where quiet motion is broken "
-        "by a few encounters, other libraries may take less time; the last column says who does.",
+        "Where steps have to vary by many powers of ten, where forces of a tree suffice, or where a few encounters "
+        "break quiet motion, other libraries may take less time; the last column says who does.",
         (
             Table(
                 ("problem", "error", "canon / the cheapest other", "by the whole call", ""),
