@@ -319,6 +319,7 @@ def jitcode_methods(problem: Problem) -> Iterator[Contender]:
         tempfile.TemporaryDirectory() as folder,
         contextlib.chdir(folder),
     ):  # it reads a pyproject.toml beside it
+        own.generate_f_C(simplify=False, do_cse=True)
         own.compile_C()
 
     def run(setting: float, instants: int) -> Run:
