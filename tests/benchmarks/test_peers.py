@@ -26,7 +26,9 @@ def test_both_times_of_every_contender_are_told(monkeypatch):
     assert title == "Hénon–Heiles, max |ΔE/E| ≤ 1e-02"
     assert {row.split()[0] for row in rows} == {"canon", "heyoka"}
     for row in rows:
-        loop, whole = (float(words.split()[-1]) for words in row.replace(" the whole call", "").split(" µs a period, "))
+        loop, whole = (
+            float(words.split()[-1]) for words in row.replace(" the whole call", "").split(" µs a period, ")
+        )
         assert 0.0 < loop < whole
     assert ratio.startswith("    canon ")
     assert ratio.endswith("by the whole call")
@@ -47,7 +49,11 @@ def first_of(methods):
 def test_heyokas_ways_find_the_same_ends():
     problem = peer_problems.Problem("Hénon–Heiles", "henon-heiles", 0, 4, 2)
     starts = peers_ensembles.starts_of(problem, 8)
-    ends = [run(1e-12, starts, 1)[1] for name, _, run in peers_ensembles.heyoka_methods(problem) if "8" not in name]
+    ends = [
+        run(1e-12, starts, 1)[1]
+        for name, _, run in peers_ensembles.heyoka_methods(problem)
+        if "8" not in name
+    ]
     _, _, ours = next(iter(peers_ensembles.canon_methods(problem)))
     for end in ends:
         assert end.shape == (4, 2, 8)
