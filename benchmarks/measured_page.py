@@ -334,8 +334,8 @@ SECTIONS = {
         "reaches the accuracy: by its loop, and by the whole of a further call over a thousand periods.",
         (
             Table(
-                ("problem", "max |ΔE/E|", "canon / the cheapest other", "with canon's whole call"),
-                r"^    canon ([\d.]+) × the cheapest other(?:, ([\d.]+) × with the call)?",
+                ("problem", "max |ΔE/E|", "canon / the cheapest other", "by the whole call"),
+                r"^    canon ([\d.]+) × the cheapest other(?:, ([\d.]+) × (?:with the call|by the whole call))?",
                 under=r"^(\S.*), max \|ΔE/E\| ≤ (\S+)$",
             ),
         ),
@@ -346,6 +346,37 @@ SECTIONS = {
             "Time of canon's cheapest method over that of the cheapest other library, by problem and "
             "accuracy",
             bars=True,
+        ),
+    ),
+    "peers_ensembles": Section(
+        "Of ten thousand orbits each costs canon less than any other library takes, where a ratio is below 1.",
+        (
+            Table(
+                ("problem", "method", "setting", "max |ΔE/E|", "its loop, µs an orbit", "the whole call"),
+                r"^    (\S.*?) {2,}(\S+) +(\S+) +([\d.]+) µs an orbit, ([\d.]+) the whole call$",
+                under=r"^(\S.*), \d+ orbits, max",
+            ),
+            Table(
+                ("problem", "canon / the cheapest other", "by the whole call"),
+                r"^    canon ([\d.]+) × the cheapest other, ([\d.]+) × by the whole call$",
+                under=r"^(\S.*), \d+ orbits, max",
+            ),
+        ),
+    ),
+    "peers_losing": Section(
+        "Where steps have to vary by many powers of ten, where forces of a tree suffice, or where a few encounters "
+        "break quiet motion, other libraries may take less time; the last column says who does.",
+        (
+            Table(
+                ("problem", "error", "canon / the cheapest other", "by the whole call", ""),
+                r"^    canon (\S+) × the cheapest other, (\S+) × by the whole call: (.*)$",
+                under=r"^(\S.*), error ≤ (\S+)$",
+            ),
+            Table(
+                ("problem", "wanted", "method", "setting", "error", "its loop, µs", "the whole call"),
+                r"^    (\S.*?) {2,}(\S+) +(\S+) +(\d+) µs, (\d+) the whole call$",
+                under=r"^(\S.*), error ≤ (\S+)$",
+            ),
         ),
     ),
     "planets": Section(

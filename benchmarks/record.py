@@ -40,6 +40,8 @@ BENCHMARKS = {
     "brouwer": "Energy error over 10⁸ steps: Brouwer's law",
     "headline": "A million years of planets, ten million periods of Kepler's ellipse",
     "peers": "Work at a wanted accuracy, beside other libraries",
+    "peers_ensembles": "Ten thousand orbits, beside other libraries",
+    "peers_losing": "Stiff, large and with close encounters, beside other libraries",
     "planets": "The planets, by methods for small perturbations",
     "scale_out": "Studies on two processes",
     "drift_calibration": "The drift statistics on series of known growth",
