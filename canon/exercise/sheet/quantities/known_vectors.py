@@ -58,7 +58,7 @@ def vectors_in(text: str, keys: Mapping[str, Any], scope: Scope) -> list[tuple[i
     >>> x, y = coordinates("x y")
     >>> scope = Scope({"x": x, "y": y}, {"V": ("x", "y")})
     >>> vectors_in(r"\ddot{\vec r} = -\nabla V", {"q": ["x", "y"]}, scope)
-    [(0, 14, ('x_ddot', 'y_ddot')), (18, 26, ('\\frac{\\partial V}{\\partial x}', '\\frac{\\partial V}{\\partial y}'))]
+    [(0, 14, ('x_ddot', 'y_ddot')), (17, 25, ('\\frac{\\partial V}{\\partial x}', '\\frac{\\partial V}{\\partial y}'))]
     """
     q = [str(name) for name in keys["q"]] if isinstance(keys.get("q"), list) else []
     if len(q) < 2 or q != [axis for axis in _AXES if axis in q]:
