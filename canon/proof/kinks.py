@@ -118,7 +118,7 @@ class OffKinks:
         )
 
 
-def off_kinks(functions: Iterable[Expr], domain: Domain, *, touching: bool = True) -> OffKinks:
+def off_kinks(functions: Iterable[Expr], domain: Domain) -> OffKinks:
     """Return a domain without the kinks that some functions have.
 
     Parameters
@@ -127,8 +127,6 @@ def off_kinks(functions: Iterable[Expr], domain: Domain, *, touching: bool = Tru
         What is differentiated, or follows from derivatives.
     domain
         The domain to be narrowed.
-    touching
-        Leave out the points too where u does not change its sign, as in sign(x²) at x = 0.
 
     Examples
     --------
@@ -145,12 +143,12 @@ def off_kinks(functions: Iterable[Expr], domain: Domain, *, touching: bool = Tru
     off: dict[sp.Basic, sp.Basic] = {}
     for part, gap in _gaps(found):
         variants = _variants(gap) if len(settled) < MOST_KINKS else None
-        factors = list(_factors([gap] if variants is None else variants, touching=touching))
+        factors = list(_factors([gap] if variants is None else variants))
         for factor in factors:
             if factor not in settled:
                 settled[factor] = variants is not None and _is_thin(factor, domain)
         if all(settled[factor] is True for factor in factors):
-            off |= _off_its_kink(part, variants or [], touching=touching)
+            off |= _off_its_kink(part, variants or [])
     thin, doubtful = _where(settled, so=True), _where(settled, so=False)
     narrowed = Domain((*domain.conditions, *thin), domain.box) if thin else domain
     strictly = Domain((*narrowed.conditions, *doubtful), domain.box) if doubtful else narrowed
@@ -162,11 +160,11 @@ def _where(settled: Mapping[Expr, bool | None], *, so: bool) -> list[Boolean]:
     return [cast("Boolean", sp.Ne(f, 0, evaluate=False)) for f, is_thin in settled.items() if is_thin is so]
 
 
-def _off_its_kink(part: sp.Basic, variants: Sequence[Expr], *, touching: bool) -> dict[sp.Basic, sp.Basic]:
+def _off_its_kink(part: sp.Basic, variants: Sequence[Expr]) -> dict[sp.Basic, sp.Basic]:
     """Return what δ(u), u = 0 and u ≠ 0 are off the places where u vanishes."""
     if isinstance(part, sp.DiracDelta):
         return {part: sp.Integer(0)}
-    if touching and isinstance(part, sp.Eq | sp.Ne) and _are_asked(variants):
+    if isinstance(part, sp.Eq | sp.Ne) and _are_asked(variants):
         return {part: sp.true if isinstance(part, sp.Ne) else sp.false}
     return {}
 
@@ -250,12 +248,12 @@ def _pieces(function: sp.Basic) -> list[Expr] | None:
     return [sp.Integer(1), sp.Integer(0) if isinstance(function, sp.Heaviside) else sp.Integer(-1)]
 
 
-def _factors(variants: list[Expr], *, touching: bool) -> Iterator[Expr]:
+def _factors(variants: list[Expr]) -> Iterator[Expr]:
     """Yield what vanishes where one of some functions does, without what is known not to vanish."""
     for variant in variants:
         for factor in sp.Mul.make_args(variant):
-            base, exponent = factor.as_base_exp()
-            if _varies(base) and not base.is_nonzero and (touching or not exponent.is_even):
+            base = factor.as_base_exp()[0]
+            if _varies(base) and not base.is_nonzero:
                 yield base
 
 

@@ -355,6 +355,72 @@ def test_what_is_said_off_a_point_holds_as_it_does_everywhere(kind, keys, key, r
     assert not judge(Claim("a", kind, {**keys, key: spoilt})).holds
 
 
+SINGLE_PLACES = (
+    "(x - 1)**2 <= 0",
+    "x**2 <= 0",
+    "Eq(x, 1)",
+    "And(x >= 1, x <= 1)",
+    "Or(Eq(x, 1), x**4 <= 0)",
+    "And(x <= 0, x**2 <= 0)",
+    "x**2 - 2*x + 1 <= 0",
+    "sqrt((x - 1)**2) <= 0",
+    "Abs(x - sqrt(2)) <= 0",
+    "x**2 + y**2 <= 0",
+)
+PIECES = (
+    "x < 1",
+    "(x - 1)**2 <= 10**(-60)",
+    "Max(x, 1) <= 1",
+    "Or(Eq(x, 2), Max(x, 0) <= 0)",
+    "x**2 - y**2 <= 0",
+)
+
+
+@pytest.mark.parametrize("condition", SINGLE_PLACES)
+def test_an_equality_is_not_wrong_at_single_places_only(condition):
+    plane = {"parameters": {"x": "real", "y": "real"}, "lhs": f"Piecewise((x + 1, {condition}), (x, True))"}
+    assert judge(Claim("a", "equality-only", {**plane, "rhs": "x"})).holds
+    assert judge(Claim("a", "equality-only", {**plane, "rhs": "x + 1"})).fails
+    motion = {
+        **PHASE,
+        "H": "p**2/2",
+        "q_dot": [f"p + {plane['lhs']} - x".replace("x", "q").replace("y", "p")],
+    }
+    assert judge(Claim("a", "hamilton-equations", {**motion, "p_dot": ["0"]})).holds
+
+
+@pytest.mark.parametrize("condition", PIECES)
+def test_an_equality_is_wrong_on_pieces(condition):
+    plane = {"parameters": {"x": "real", "y": "real"}, "lhs": f"Piecewise((x + 1, {condition}), (x, True))"}
+    verdict = judge(Claim("a", "equality-only", {**plane, "rhs": "x"}))
+    assert verdict.fails
+    assert verdict.counterexample is not None
+
+
+@pytest.mark.parametrize(
+    ("domain", "holds"), [([], True), (["x <= 1"], True), (["x == 0"], False), (["x >= 0", "x <= 0"], False)]
+)
+def test_a_domain_that_is_a_kink_is_meant(domain, holds):
+    keys = {"parameters": {"x": "real"}, "domain": domain, "rhs": "1"}
+    for lhs in ("sign(x**2)", "sign(x)**2", "Piecewise((0, x**2 <= 0), (1, True))"):
+        verdict = judge(Claim("a", "equality-only", {**keys, "lhs": lhs}))
+        assert verdict.holds == holds
+        assert verdict.fails or holds or len(domain) > 1
+
+
+def test_no_torus_at_a_kink_refutes_an_action():
+    keys = {"q": ["q"], "p": ["p"], "H": "p**2/2 + tan(q)**2 + tan(q)", "domain": ["-pi/2 < q", "q < pi/2"]}
+    root, u = "sqrt(E + 1 + sqrt((E + 1)**2 + 1))", sp.Symbol("q", real=True)
+    drawn = Domain((-sp.pi / 2 < u, u < sp.pi / 2)).points([u, sp.Symbol("p", real=True)], 24)
+    places = ", ".join(f"Eq(q, {point[u]})" for point in drawn)
+    claim = {
+        **keys,
+        "parameters": {"E": "positive"},
+        "J": [f"{root} - sqrt(2) + Piecewise((1, Or({places})), (0, True))"],
+    }
+    assert judge(Claim("a", "action-angle", claim)).undecided
+
+
 def test_motions_may_be_written_with_kinks_that_cancel():
     free = {"q": "x", "equations": ["x_ddot"]}
     for motion in ("t + Max(t, 0) - (t + Abs(t))/2", "t + t*sign(t) - Abs(t)", "Piecewise((t, Ne(t, 0)))"):

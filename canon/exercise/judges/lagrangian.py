@@ -60,7 +60,10 @@ def euler_lagrange(reading: Reading) -> Iterator[Question]:
 
 
 def dissipative(reading: Reading) -> Iterator[Question]:
-    """Equations with d/dt ∂L/∂q̇ − ∂L/∂q + ∂F/∂q̇ = Q, and dE/dt = Σ q̇ (Q − ∂F/∂q̇) − ∂L/∂t."""
+    """Equations with d/dt ∂L/∂q̇ − ∂L/∂q + ∂F/∂q̇ = Q, and dE/dt = Σ q̇ (Q − ∂F/∂q̇) − ∂L/∂t.
+
+    What is claimed is what is asked: an answer that gives dE/dt alone, without accelerations, is complete.
+    """
     q, t = reading.symbols("q"), reading.time
     damping = reading.expression("F", sp.S.Zero)
     applied = reading.expressions("Qnc", like="q") if reading.has("Qnc") else (sp.S.Zero,) * len(q)
@@ -68,8 +71,6 @@ def dissipative(reading: Reading) -> Iterator[Question]:
     lagrangian = lagrangian_of(reading, forces=forces)
     if reading.has("claim"):
         yield from same_motion(reading, lagrangian)
-    else:
-        yield Determines(lambda: stay_open([acceleration(x) for x in q]))
     if reading.has("energy_rate"):
         claimed = reading.expression("energy_rate")
         rate = sp.Add(*(velocity(x) * Q for x, Q in zip(q, forces, strict=True)), -lagrangian.L.diff(t))
