@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["OffKinks", "off_kinks", "vanishes_off_kinks"]
+__all__ = ["OffKinks", "off_kinks", "vanishes_off_kinks", "vanishes_on_no_piece"]
 
 WITH_PIECES = (*KINKED, sp.Piecewise, sp.DiracDelta)
 """Functions with kinks, and what SymPy writes for the derivative of a jump."""
@@ -184,6 +184,21 @@ def vanishes_off_kinks(expr: Expr | sp.MatrixBase, domain: Domain, budget: float
     off = off_kinks(expr.flat() if isinstance(expr, sp.MatrixBase) else [expr], domain)
     seen = expr.applyfunc(off.seen) if isinstance(expr, sp.MatrixBase) else off.seen(expr)
     return off.ask(lambda narrowed: vanishes(seen, narrowed, max(0.05, deadline - time.monotonic())))
+
+
+def vanishes_on_no_piece(f: Expr, domain: Domain) -> bool:
+    """Tell whether a function with pieces is certainly zero on no piece of a domain.
+
+    Off kinks it is near every point one of the formulas that its pieces make it; none of these is zero on a piece.
+
+    Examples
+    --------
+    >>> x = sp.Symbol("x", real=True)
+    >>> [vanishes_on_no_piece(f, Domain()) for f in (sp.Max(x, 1), x * abs(x - 1), sp.Max(x, 0), x + abs(x))]
+    [True, True, False, False]
+    """
+    variants = _variants(f)
+    return bool(variants) and _are_asked(variants) and all(_is_thin(g, domain) for g in _factors(variants))
 
 
 def _gaps(found: Anatomy) -> Iterator[tuple[sp.Basic, Expr]]:

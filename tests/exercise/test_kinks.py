@@ -220,6 +220,58 @@ def test_a_factor_that_vanishes_on_a_piece_is_no_equation():
     assert not examine(Claim("a", "euler-lagrange", {**keys, "claim": claim})).verdict.holds
 
 
+SPRING = {"q": "x", "L": "x_dot**2/2 - x**2/2"}
+TWO = {"q": ["x", "y"], "L": "(x_dot**2 + y_dot**2)/2 - (x**2 + y**2)/2"}
+SKATE = {
+    "q": ["x", "y", "theta"],
+    "quasi": ["u", "w"],
+    "q_dot": ["u*cos(theta)", "u*sin(theta)", "w"],
+    "bodies": [{"m": "m", "r": ["x", "y"], "I": "J", "angle": "theta"}],
+    "V": "m*g*x*sin(alpha)",
+    "parameters": {"m": "positive", "J": "positive", "g": "positive", "alpha": "real"},
+}
+SILENT = [
+    ("euler-lagrange", SPRING, ["({f})*(x_ddot + x)"], "Abs(x - 100) + x - 100", "Abs(x - 100) + 1", "x > 100"),
+    ("euler-lagrange", SPRING, ["({f})*(x_ddot + x)"], "Piecewise((0, x > 3), (1, True))", "Piecewise((2, x > 3), (1, True))", "x < 3"),
+    ("euler-lagrange", TWO, ["x_ddot + x", "({f})*(y_ddot + y)"], "Max(y, 0)", "Max(y, 1)", "y > 0"),
+    ("euler-lagrange", TWO, ["x_ddot + x", "({f})*(y_ddot + y)"], "1 + sign(x*y)", "2 + sign(x*y)", "x*y > 0"),
+    ("dissipative", {**SPRING, "F": "x_dot**2/2"}, ["({f})*(x_ddot + x_dot + x)"], "x - Abs(x)", "x - 2*Abs(x)", "x < 0"),
+    ("gibbs-appell", SKATE, ["u_dot = -g*sin(alpha)*cos(theta)", "w_dot*({f}) = 0"], "Max(u, 0)", "Max(u, 0) + 1", "u > 0"),
+    ("routhian", CYCLIC | {"L": "(x_dot**2 + y_dot**2)/2 - x**2/2"}, ["({f})*(x_ddot + x)"], "Abs(b) - b", "Abs(b) + 1", "b < 0"),
+]  # fmt: skip
+"""Equations with a factor that is zero on a piece; one that is not; and where the first is not zero."""
+
+
+@pytest.mark.parametrize(("kind", "keys", "claim", "silent", "loud", "domain"), SILENT)
+def test_an_equation_that_says_nothing_on_a_piece_fails_there(kind, keys, claim, silent, loud, domain):
+    def judged(factor, **more):
+        return judge(Claim("a", kind, {**keys, "claim": [e.format(f=factor) for e in claim], **more}))
+
+    verdict = judged(silent)
+    assert verdict.fails
+    assert verdict.counterexample is not None
+    assert judged(loud).holds
+    assert not judged(silent, domain=[domain]).fails
+    assert judged(
+        silent, domain=[domain.replace(">", "<") if ">" in domain else domain.replace("<", ">")]
+    ).fails
+
+
+def test_a_box_does_not_make_an_equation_say_something():
+    for box in ({"x": [101, 200]}, {"x": [-3, 3]}):
+        claim = {**SPRING, "claim": ["(Abs(x - 100) + x - 100)*(x_ddot + x)"], "box": box}
+        assert judge(Claim("a", "euler-lagrange", claim)).fails
+
+
+def test_a_single_place_where_an_equation_says_nothing_does_no_harm():
+    for factor in ("sign(x)", "Abs(x)*Max(x, -x)", "x*Max(x, 1)"):
+        claim = {**SPRING, "claim": [f"({factor})*(x_ddot + x)"]}
+        assert judge(Claim("a", "euler-lagrange", claim)).holds, factor
+        assert judge(Claim("a", "euler-lagrange", {**claim, "domain": ["x <= 1"]})).holds, factor
+    at_one = {**SPRING, "claim": ["Piecewise((0, (x - 1)**2 <= 0), (1, True))*(x_ddot + x)"]}
+    assert not judge(Claim("a", "euler-lagrange", at_one)).fails
+
+
 def test_a_sign_alone_is_still_no_constant():
     keys = {"q": "q", "p": "p", "H": "p**2/2 + q**2/2", "domain": ["Ne(p, 0)"]}
     assert not examine(Claim("a", "constant-of-motion", {**keys, "I": "sign(p)"})).verdict.holds
