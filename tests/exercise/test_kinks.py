@@ -232,12 +232,16 @@ SKATE = {
 }
 SILENT = [
     ("euler-lagrange", SPRING, ["({f})*(x_ddot + x)"], "Abs(x - 100) + x - 100", "Abs(x - 100) + 1", "x > 100"),
-    ("euler-lagrange", SPRING, ["({f})*(x_ddot + x)"], "Piecewise((0, x > 3), (1, True))", "Piecewise((2, x > 3), (1, True))", "x < 3"),
+    ("euler-lagrange", SPRING, ["({f})*(x_ddot + x)"],
+     "Piecewise((0, x > 3), (1, True))", "Piecewise((2, x > 3), (1, True))", "x < 3"),
     ("euler-lagrange", TWO, ["x_ddot + x", "({f})*(y_ddot + y)"], "Max(y, 0)", "Max(y, 1)", "y > 0"),
     ("euler-lagrange", TWO, ["x_ddot + x", "({f})*(y_ddot + y)"], "1 + sign(x*y)", "2 + sign(x*y)", "x*y > 0"),
-    ("dissipative", {**SPRING, "F": "x_dot**2/2"}, ["({f})*(x_ddot + x_dot + x)"], "x - Abs(x)", "x - 2*Abs(x)", "x < 0"),
-    ("gibbs-appell", SKATE, ["u_dot = -g*sin(alpha)*cos(theta)", "w_dot*({f}) = 0"], "Max(u, 0)", "Max(u, 0) + 1", "u > 0"),
-    ("routhian", CYCLIC | {"L": "(x_dot**2 + y_dot**2)/2 - x**2/2"}, ["({f})*(x_ddot + x)"], "Abs(b) - b", "Abs(b) + 1", "b < 0"),
+    ("dissipative", {**SPRING, "F": "x_dot**2/2"}, ["({f})*(x_ddot + x_dot + x)"],
+     "x - Abs(x)", "x - 2*Abs(x)", "x < 0"),
+    ("gibbs-appell", SKATE, ["u_dot = -g*sin(alpha)*cos(theta)", "w_dot*({f}) = 0"],
+     "Max(u, 0)", "Max(u, 0) + 1", "u > 0"),
+    ("routhian", CYCLIC | {"L": "(x_dot**2 + y_dot**2)/2 - x**2/2"}, ["({f})*(x_ddot + x)"],
+     "Abs(b) - b", "Abs(b) + 1", "b < 0"),
 ]  # fmt: skip
 """Equations with a factor that is zero on a piece; one that is not; and where the first is not zero."""
 

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import sympy as sp
-from sympy import Expr, Symbol
-
 from canon.exercise.judges.conserved import (
     NOT_OF_THE_STATE,
     mechanical_system,
@@ -29,6 +26,8 @@ from canon.mechanics.hamilton.legendre_pair import hamiltonian
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from sympy import Expr, Symbol
 
     from canon.exercise.sheet.reading import Reading
 

@@ -50,10 +50,10 @@ class Regime:
 def regimes(exprs: Sequence[Expr], domain: Domain, deadline: float) -> Iterator[Regime]:
     """Yield regimes of some expressions around points of a domain, those in the box before others.
 
-    What a modulus, a maximum or a condition of a piece turns on is certainly not zero at the point, and every inequality
-    of the domain holds strictly there. So all that is said of a regime is true around that point: it is open, and not
-    empty. A box is a hint only, and is left out. Equalities of the domain that are not linear may have single points;
-    then nothing is yielded.
+    What a modulus, a maximum or a condition of a piece turns on is certainly not zero at the point, and every
+    inequality of the domain holds strictly there. So all that is said of a regime is true around that point: it is
+    open, and not empty. A box is a hint only, and is left out. Equalities of the domain that are not linear may have
+    single points; then nothing is yielded.
 
     Parameters
     ----------
