@@ -205,8 +205,16 @@ OPEN = (
     ("jacobi-identity", BODY, "a Casimir function stays open"),
 )  # fmt: skip
 
+OPEN += (
+    ("multiplier-holonomic",
+     {**CIRCLE, "claim": ["x*y_ddot - y*x_ddot + g*x", "Max(y, 0)*(2*l**2*lam + m*(x_dot**2 + y_dot**2) - m*g*y)"]},
+     "lam stays open: 1 equation is missing, where y < 0"),
+)  # fmt: skip
+
 CLOSED = (
     ("multiplier-holonomic", {**CIRCLE, "claim": ["x*y_ddot - y*x_ddot + g*x",
+                                                "2*l**2*lam + m*(x_dot**2 + y_dot**2) = m*g*y"]}),
+    ("multiplier-holonomic", {**CIRCLE, "claim": ["Abs(x)*(x*y_ddot - y*x_ddot + g*x)",
                                                 "2*l**2*lam + m*(x_dot**2 + y_dot**2) = m*g*y"]}),
     ("dissipative", {**DAMPED, "claim": ["m*x_ddot + c*x_dot + k*x"]}),
     ("dissipative", {**DAMPED, "energy_rate": "-c*x_dot**2"}),
