@@ -342,6 +342,8 @@ def meets(f: Expr, gap: Expr, moving: Sequence[Symbol], domain: Domain, budget: 
     [True, False, True]
     """
     above, below = (continued(f, gap, moving, up=up) for up in (True, False))
+    if (above - below).has(sp.nan, sp.zoo):
+        return False
     ratio = proportion(above - below, gap)
     if above - below == 0 or (ratio is not None and sp.expand(above - below - ratio * gap) == 0):
         return True

@@ -68,7 +68,7 @@ def neighbourhood(
     ([-x - y], {y: -1, x + y: -1})
     """
     around = _Neighbourhood(point)
-    return [cast("Expr", around.formula(expr)) for expr in exprs], around.signs
+    return [cast("Expr", around.formula(expr)) for expr in exprs], around.gaps()
 
 
 def holds_around(condition: sp.Basic, point: Mapping[Symbol, sp.Rational]) -> bool:
@@ -163,7 +163,7 @@ class _Neighbourhood:
         if not isinstance(condition, Relational):
             raise Unmodelled(f"the condition {condition} is not modelled")
         left, right = arguments(condition)
-        sign = self._sign(cast("Expr", self.formula(left - right)))
+        sign = self._sign(left - right)
         match condition:
             case sp.Eq():
                 return False
@@ -183,8 +183,19 @@ class _Neighbourhood:
             raise Undefined("complex numbers are compared")
         sign = 1 if ball.real > 0 else -1
         if gap.free_symbols:
-            self.signs[_written_out(gap)] = sign
+            self.signs[gap] = sign
         return sign
+
+    def gaps(self) -> dict[Expr, int]:
+        """Return the signs of what was asked, as formulas around the point; |q| < 1 stays so at its kink q = 0."""
+        found: dict[Expr, int] = {}
+        for gap, sign in list(self.signs.items()):
+            try:
+                formula = cast("Expr", self.formula(gap))
+            except (NoPiece, NotDecided, Undefined, Unmodelled):
+                formula = gap
+            found[_written_out(formula)] = sign
+        return found | {_written_out(gap): sign for gap, sign in self.signs.items() if not gap.has(*KINKED)}
 
     def _smooth(self, part: sp.Basic, inner: list[Expr]) -> sp.Basic:
         if isinstance(part, sp.Max | sp.Min):
