@@ -175,9 +175,12 @@ def _refuted_in_a_regime(
     """Return that systems differ on an open part of the domain on which all their pieces are one formula each.
 
     (|x| + x)(ẍ + x) = 0 is ẍ + x = 0 where x > 0, and says nothing where x < 0. A regime is a part of the domain, so a
-    verdict FAILS on it is one on the whole; that systems agree there proves nothing.
+    verdict FAILS on it is one on the whole; that systems agree there proves nothing. Regimes are of states: where
+    pieces turn on the unknowns, the solutions may lie in other ones.
     """
     for regime in regimes([*system_a, *system_b], domain, deadline):
+        if any(condition.has(*unknowns) for condition in regime.conditions):
+            continue
         a, b = regime.formulas[: len(system_a)], regime.formulas[len(system_a) :]
         where = f" where {regime}" if len(str(regime)) <= LONGEST_SAID else ""
         try:
