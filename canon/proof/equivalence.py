@@ -11,9 +11,10 @@ import sympy as sp
 from canon.cached_property import cached_property
 from canon.expression.symbols.user_input import given_expression, given_kind, given_seconds, given_symbols
 from canon.proof.analytic import is_analytic, proved_sign
+from canon.proof.definedness.open_regimes import regimes
 from canon.proof.domain.domain import EVERYWHERE, Domain, as_domain
 from canon.proof.domain.verdict import Evidence, Status, Verdict
-from canon.proof.kinks import off_kinks
+from canon.proof.kinks import off_kinks, vanishes_on_no_piece
 from canon.proof.refute.largest_minor import determinant, largest_minor
 from canon.proof.trees.affine_form import is_affine
 from canon.proof.trees.replacement import defined_nowhere
@@ -157,10 +158,41 @@ def systems_compared(
     ]
     off = off_kinks([e for system in given for e in system], domain)
     first, second = ([off.seen(e) for e in system] for system in given)
-    return replace(
-        off.ask(lambda there: _equivalent(first, second, unknowns, there, deadline, said)),
-        seconds=time.monotonic() - start,
-    )
+    verdict = off.ask(lambda there: _equivalent(first, second, unknowns, there, deadline, said))
+    refuted = None
+    if verdict.undecided:
+        refuted = _refuted_in_a_regime(first, second, unknowns, off.domain, deadline, said)
+    return replace(verdict if refuted is None else refuted, seconds=time.monotonic() - start)
+
+
+def _refuted_in_a_regime(
+    system_a: Sequence[Expr],
+    system_b: Sequence[Expr],
+    unknowns: Sequence[Symbol],
+    domain: Domain,
+    deadline: float,
+    said: Callable[[Stray], str],
+) -> Verdict | None:
+    """Return that systems differ on an open part of the domain on which all their pieces are one formula each.
+
+    (|x| + x)(ẍ + x) = 0 is ẍ + x = 0 where x > 0, and says nothing where x < 0. A regime is a part of the domain, so a
+    verdict FAILS on it is one on the whole; that systems agree there proves nothing. Regimes are of states: where
+    pieces turn on the unknowns, the solutions may lie in other ones.
+    """
+    for regime in regimes([*system_a, *system_b], domain, deadline):
+        if any(condition.has(*unknowns) for condition in regime.conditions):
+            continue
+        a, b = regime.formulas[: len(system_a)], regime.formulas[len(system_a) :]
+        where = f" where {regime}" if len(str(regime)) <= LONGEST_SAID else ""
+        try:
+            verdict = _equivalent(
+                a, b, unknowns, regime.domain, deadline, lambda stray, where=where: f"{said(stray)}{where}"
+            )
+        except NotAffineError:
+            continue
+        if verdict.fails:
+            return verdict
+    return None
 
 
 def _equivalent(
@@ -290,6 +322,7 @@ class _Basis:
             self.field
             or proved_sign(minor, domain) in ("+", "-")
             or is_analytic(_without_moduli(minor), domain)
+            or vanishes_on_no_piece(minor, domain)
         )
 
     @property

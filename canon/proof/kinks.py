@@ -35,7 +35,15 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
     from sympy.logic.boolalg import Boolean
 
-__all__ = ["WITH_PIECES", "OffKinks", "is_thin", "off_kinks", "vanishes_off_kinks", "variants_of"]
+__all__ = [
+    "WITH_PIECES",
+    "OffKinks",
+    "is_thin",
+    "off_kinks",
+    "vanishes_off_kinks",
+    "vanishes_on_no_piece",
+    "variants_of",
+]
 
 WITH_PIECES = (*KINKED, sp.Piecewise, sp.DiracDelta)
 """Functions with kinks, and what SymPy writes for the derivative of a jump."""
@@ -118,7 +126,7 @@ class OffKinks:
         )
 
 
-def off_kinks(functions: Iterable[Expr], domain: Domain, *, touching: bool = True) -> OffKinks:
+def off_kinks(functions: Iterable[Expr], domain: Domain) -> OffKinks:
     """Return a domain without the kinks that some functions have.
 
     Parameters
@@ -127,8 +135,6 @@ def off_kinks(functions: Iterable[Expr], domain: Domain, *, touching: bool = Tru
         What is differentiated, or follows from derivatives.
     domain
         The domain to be narrowed.
-    touching
-        Leave out the points too where u does not change its sign, as in sign(x²) at x = 0.
 
     Examples
     --------
@@ -145,12 +151,12 @@ def off_kinks(functions: Iterable[Expr], domain: Domain, *, touching: bool = Tru
     off: dict[sp.Basic, sp.Basic] = {}
     for part, gap in _gaps(found):
         variants = variants_of(gap) if len(settled) < MOST_KINKS else None
-        factors = list(_factors([gap] if variants is None else variants, touching=touching))
+        factors = list(_factors([gap] if variants is None else variants))
         for factor in factors:
             if factor not in settled:
                 settled[factor] = variants is not None and is_thin(factor, domain)
         if all(settled[factor] is True for factor in factors):
-            off |= _off_its_kink(part, variants or [], touching=touching)
+            off |= _off_its_kink(part, variants or [])
     thin, doubtful = _where(settled, so=True), _where(settled, so=False)
     narrowed = Domain((*domain.conditions, *thin), domain.box) if thin else domain
     strictly = Domain((*narrowed.conditions, *doubtful), domain.box) if doubtful else narrowed
@@ -162,11 +168,11 @@ def _where(settled: Mapping[Expr, bool | None], *, so: bool) -> list[Boolean]:
     return [cast("Boolean", sp.Ne(f, 0, evaluate=False)) for f, is_thin in settled.items() if is_thin is so]
 
 
-def _off_its_kink(part: sp.Basic, variants: Sequence[Expr], *, touching: bool) -> dict[sp.Basic, sp.Basic]:
+def _off_its_kink(part: sp.Basic, variants: Sequence[Expr]) -> dict[sp.Basic, sp.Basic]:
     """Return what δ(u), u = 0 and u ≠ 0 are off the places where u vanishes."""
     if isinstance(part, sp.DiracDelta):
         return {part: sp.Integer(0)}
-    if touching and isinstance(part, sp.Eq | sp.Ne) and _are_asked(variants):
+    if isinstance(part, sp.Eq | sp.Ne) and _are_asked(variants):
         return {part: sp.true if isinstance(part, sp.Ne) else sp.false}
     return {}
 
@@ -186,6 +192,21 @@ def vanishes_off_kinks(expr: Expr | sp.MatrixBase, domain: Domain, budget: float
     off = off_kinks(expr.flat() if isinstance(expr, sp.MatrixBase) else [expr], domain)
     seen = expr.applyfunc(off.seen) if isinstance(expr, sp.MatrixBase) else off.seen(expr)
     return off.ask(lambda narrowed: vanishes(seen, narrowed, max(0.05, deadline - time.monotonic())))
+
+
+def vanishes_on_no_piece(f: Expr, domain: Domain) -> bool:
+    """Tell whether a function with pieces is certainly zero on no piece of a domain.
+
+    Off kinks it is near every point one of the formulas that its pieces make it; none of these is zero on a piece.
+
+    Examples
+    --------
+    >>> x = sp.Symbol("x", real=True)
+    >>> [vanishes_on_no_piece(f, Domain()) for f in (sp.Max(x, 1), x * abs(x - 1), sp.Max(x, 0), x + abs(x))]
+    [True, True, False, False]
+    """
+    variants = variants_of(f)
+    return bool(variants) and _are_asked(variants) and all(is_thin(g, domain) for g in _factors(variants))
 
 
 def _gaps(found: Anatomy) -> Iterator[tuple[sp.Basic, Expr]]:
@@ -250,12 +271,12 @@ def _pieces(function: sp.Basic) -> list[Expr] | None:
     return [sp.Integer(1), sp.Integer(0) if isinstance(function, sp.Heaviside) else sp.Integer(-1)]
 
 
-def _factors(variants: list[Expr], *, touching: bool) -> Iterator[Expr]:
+def _factors(variants: list[Expr]) -> Iterator[Expr]:
     """Yield what vanishes where one of some functions does, without what is known not to vanish."""
     for variant in variants:
         for factor in sp.Mul.make_args(variant):
-            base, exponent = factor.as_base_exp()
-            if _varies(base) and not base.is_nonzero and (touching or not exponent.is_even):
+            base = factor.as_base_exp()[0]
+            if _varies(base) and not base.is_nonzero:
                 yield base
 
 

@@ -28,6 +28,7 @@ from canon.proof.refute.refute import (
 )
 from canon.proof.refute.root_branches import search_branches
 from canon.proof.refute.sample_functions import evaluated
+from canon.proof.refute.tiny_values import look_for_tiny_value
 from canon.proof.rungs.ladder import REFUSALS, Attempt, is_empty, prove_each, prove_zero, refusal
 from canon.proof.trees.anatomy import anatomy
 from canon.proof.worker.budget import prove_in_worker
@@ -314,6 +315,7 @@ def _climb(left: Expr, right: Expr, domain: Domain, deadline: float, names: tupl
     if search.counterexample is not None:
         return _refuted(left, right, search)
     search = look_in_corners(left, right, domain, _share(CORNER_SHARE, deadline), search)
+    search = look_for_tiny_value(difference, domain, _share(CORNER_SHARE, deadline), search)
     if search.counterexample is not None:
         return _refuted(left, right, search)
     proof = _thorough(proof, difference, domain, deadline)

@@ -220,6 +220,62 @@ def test_a_factor_that_vanishes_on_a_piece_is_no_equation():
     assert not examine(Claim("a", "euler-lagrange", {**keys, "claim": claim})).verdict.holds
 
 
+SPRING = {"q": "x", "L": "x_dot**2/2 - x**2/2"}
+TWO = {"q": ["x", "y"], "L": "(x_dot**2 + y_dot**2)/2 - (x**2 + y**2)/2"}
+SKATE = {
+    "q": ["x", "y", "theta"],
+    "quasi": ["u", "w"],
+    "q_dot": ["u*cos(theta)", "u*sin(theta)", "w"],
+    "bodies": [{"m": "m", "r": ["x", "y"], "I": "J", "angle": "theta"}],
+    "V": "m*g*x*sin(alpha)",
+    "parameters": {"m": "positive", "J": "positive", "g": "positive", "alpha": "real"},
+}
+SILENT = [
+    ("euler-lagrange", SPRING, ["({f})*(x_ddot + x)"], "Abs(x - 100) + x - 100", "Abs(x - 100) + 1", "x > 100"),
+    ("euler-lagrange", SPRING, ["({f})*(x_ddot + x)"],
+     "Piecewise((0, x > 3), (1, True))", "Piecewise((2, x > 3), (1, True))", "x < 3"),
+    ("euler-lagrange", TWO, ["x_ddot + x", "({f})*(y_ddot + y)"], "Max(y, 0)", "Max(y, 1)", "y > 0"),
+    ("euler-lagrange", TWO, ["x_ddot + x", "({f})*(y_ddot + y)"], "1 + sign(x*y)", "2 + sign(x*y)", "x*y > 0"),
+    ("dissipative", {**SPRING, "F": "x_dot**2/2"}, ["({f})*(x_ddot + x_dot + x)"],
+     "x - Abs(x)", "x - 2*Abs(x)", "x < 0"),
+    ("gibbs-appell", SKATE, ["u_dot = -g*sin(alpha)*cos(theta)", "w_dot*({f}) = 0"],
+     "Max(u, 0)", "Max(u, 0) + 1", "u > 0"),
+    ("routhian", CYCLIC | {"L": "(x_dot**2 + y_dot**2)/2 - x**2/2"}, ["({f})*(x_ddot + x)"],
+     "Abs(b) - b", "Abs(b) + 1", "b < 0"),
+]  # fmt: skip
+"""Equations with a factor that is zero on a piece; one that is not; and where the first is not zero."""
+
+
+@pytest.mark.parametrize(("kind", "keys", "claim", "silent", "loud", "domain"), SILENT)
+def test_an_equation_that_says_nothing_on_a_piece_fails_there(kind, keys, claim, silent, loud, domain):
+    def judged(factor, **more):
+        return judge(Claim("a", kind, {**keys, "claim": [e.format(f=factor) for e in claim], **more}))
+
+    verdict = judged(silent)
+    assert verdict.fails
+    assert verdict.counterexample is not None
+    assert judged(loud).holds
+    assert not judged(silent, domain=[domain]).fails
+    assert judged(
+        silent, domain=[domain.replace(">", "<") if ">" in domain else domain.replace("<", ">")]
+    ).fails
+
+
+def test_a_box_does_not_make_an_equation_say_something():
+    for box in ({"x": [101, 200]}, {"x": [-3, 3]}):
+        claim = {**SPRING, "claim": ["(Abs(x - 100) + x - 100)*(x_ddot + x)"], "box": box}
+        assert judge(Claim("a", "euler-lagrange", claim)).fails
+
+
+def test_a_single_place_where_an_equation_says_nothing_does_no_harm():
+    for factor in ("sign(x)", "Abs(x)*Max(x, -x)", "x*Max(x, 1)"):
+        claim = {**SPRING, "claim": [f"({factor})*(x_ddot + x)"]}
+        assert judge(Claim("a", "euler-lagrange", claim)).holds, factor
+        assert judge(Claim("a", "euler-lagrange", {**claim, "domain": ["x <= 1"]})).holds, factor
+    at_one = {**SPRING, "claim": ["Piecewise((0, (x - 1)**2 <= 0), (1, True))*(x_ddot + x)"]}
+    assert not judge(Claim("a", "euler-lagrange", at_one)).fails
+
+
 def test_a_sign_alone_is_still_no_constant():
     keys = {"q": "q", "p": "p", "H": "p**2/2 + q**2/2", "domain": ["Ne(p, 0)"]}
     assert not examine(Claim("a", "constant-of-motion", {**keys, "I": "sign(p)"})).verdict.holds
@@ -353,6 +409,72 @@ def test_what_is_said_off_a_point_holds_as_it_does_everywhere(kind, keys, key, r
         assert judge(Claim("a", kind, {**keys, key: half.format(right)})).fails, half
     spoilt = f"Piecewise(({right}, Ne(Max(x, 0), 0)), (7, True))"
     assert not judge(Claim("a", kind, {**keys, key: spoilt})).holds
+
+
+SINGLE_PLACES = (
+    "(x - 1)**2 <= 0",
+    "x**2 <= 0",
+    "Eq(x, 1)",
+    "And(x >= 1, x <= 1)",
+    "Or(Eq(x, 1), x**4 <= 0)",
+    "And(x <= 0, x**2 <= 0)",
+    "x**2 - 2*x + 1 <= 0",
+    "sqrt((x - 1)**2) <= 0",
+    "Abs(x - sqrt(2)) <= 0",
+    "x**2 + y**2 <= 0",
+)
+PIECES = (
+    "x < 1",
+    "(x - 1)**2 <= 10**(-60)",
+    "Max(x, 1) <= 1",
+    "Or(Eq(x, 2), Max(x, 0) <= 0)",
+    "x**2 - y**2 <= 0",
+)
+
+
+@pytest.mark.parametrize("condition", SINGLE_PLACES)
+def test_an_equality_is_not_wrong_at_single_places_only(condition):
+    plane = {"parameters": {"x": "real", "y": "real"}, "lhs": f"Piecewise((x + 1, {condition}), (x, True))"}
+    assert judge(Claim("a", "equality-only", {**plane, "rhs": "x"})).holds
+    assert judge(Claim("a", "equality-only", {**plane, "rhs": "x + 1"})).fails
+    motion = {
+        **PHASE,
+        "H": "p**2/2",
+        "q_dot": [f"p + {plane['lhs']} - x".replace("x", "q").replace("y", "p")],
+    }
+    assert judge(Claim("a", "hamilton-equations", {**motion, "p_dot": ["0"]})).holds
+
+
+@pytest.mark.parametrize("condition", PIECES)
+def test_an_equality_is_wrong_on_pieces(condition):
+    plane = {"parameters": {"x": "real", "y": "real"}, "lhs": f"Piecewise((x + 1, {condition}), (x, True))"}
+    verdict = judge(Claim("a", "equality-only", {**plane, "rhs": "x"}))
+    assert verdict.fails
+    assert verdict.counterexample is not None
+
+
+@pytest.mark.parametrize(
+    ("domain", "holds"), [([], True), (["x <= 1"], True), (["x == 0"], False), (["x >= 0", "x <= 0"], False)]
+)
+def test_a_domain_that_is_a_kink_is_meant(domain, holds):
+    keys = {"parameters": {"x": "real"}, "domain": domain, "rhs": "1"}
+    for lhs in ("sign(x**2)", "sign(x)**2", "Piecewise((0, x**2 <= 0), (1, True))"):
+        verdict = judge(Claim("a", "equality-only", {**keys, "lhs": lhs}))
+        assert verdict.holds == holds
+        assert verdict.fails or holds or len(domain) > 1
+
+
+def test_no_torus_at_a_kink_refutes_an_action():
+    keys = {"q": ["q"], "p": ["p"], "H": "p**2/2 + tan(q)**2 + tan(q)", "domain": ["-pi/2 < q", "q < pi/2"]}
+    root, u = "sqrt(E + 1 + sqrt((E + 1)**2 + 1))", sp.Symbol("q", real=True)
+    drawn = Domain((-sp.pi / 2 < u, u < sp.pi / 2)).points([u, sp.Symbol("p", real=True)], 12)
+    places = ", ".join(f"Eq(q, {point[u]})" for point in drawn)
+    claim = {
+        **keys,
+        "parameters": {"E": "positive"},
+        "J": [f"{root} - sqrt(2) + Piecewise((1, Or({places})), (0, True))"],
+    }
+    assert judge(Claim("a", "action-angle", claim)).undecided
 
 
 def test_motions_may_be_written_with_kinks_that_cancel():

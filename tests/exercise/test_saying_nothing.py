@@ -182,7 +182,7 @@ OPEN = (
     ("multiplier-holonomic", {**FIXED, "claim": ["a = 0"]}, "b stays open: 1 equation is missing"),
     ("nonholonomic", {**SLEIGH, "claim": ["theta_ddot"]}, "x_ddot, y_ddot, lam stay open: 2 equations are missing"),
     ("legendre-hamiltonian", {**SPRING, "p": ["p"], "exists": True}, "H stays open"),
-    ("dissipative", {**DAMPED, "energy_rate": "-c*x_dot**2"}, "x_ddot stays open"),
+    ("dissipative", {**DAMPED, "energy_rate": "x_dot*(m*x_ddot + k*x)"}, "dE/dt stays open: it is written with x_ddot"),
     ("dissipative", {**DAMPED, "claim": ["m*x_ddot + c*x_dot + k*x"], "energy_rate": "x_dot*(m*x_ddot + k*x)"},
      "dE/dt stays open: it is written with x_ddot"),
     ("poisson-bracket", {**SPACE, "pairs": [XY, YZ]}, "{-py*z + pz*y, -px*y + py*x} stays open"),
@@ -205,10 +205,20 @@ OPEN = (
     ("jacobi-identity", BODY, "a Casimir function stays open"),
 )  # fmt: skip
 
+OPEN += (
+    ("multiplier-holonomic",
+     {**CIRCLE, "claim": ["x*y_ddot - y*x_ddot + g*x", "Max(y, 0)*(2*l**2*lam + m*(x_dot**2 + y_dot**2) - m*g*y)"]},
+     "lam stays open: 1 equation is missing, where y < 0"),
+)  # fmt: skip
+
 CLOSED = (
     ("multiplier-holonomic", {**CIRCLE, "claim": ["x*y_ddot - y*x_ddot + g*x",
                                                 "2*l**2*lam + m*(x_dot**2 + y_dot**2) = m*g*y"]}),
+    ("multiplier-holonomic", {**CIRCLE, "claim": ["Abs(x)*(x*y_ddot - y*x_ddot + g*x)",
+                                                "2*l**2*lam + m*(x_dot**2 + y_dot**2) = m*g*y"]}),
     ("dissipative", {**DAMPED, "claim": ["m*x_ddot + c*x_dot + k*x"]}),
+    ("dissipative", {**DAMPED, "energy_rate": "-c*x_dot**2"}),
+    ("dissipative", {**DAMPED, "energy_rate": "-c*x_dot**2", "in": ["x", "x_dot"]}),
     ("hamilton-equations", {**OSCILLATOR, "parameters": {**MK, "A": "real"},
                             "solution": {"q": "A*cos(sqrt(k/m)*t)", "p": "-A*sqrt(k*m)*sin(sqrt(k/m)*t)"}}),
     ("routhian", {**KEPLER, "claim": ["m*r_ddot - l**2/(m*r**3) + k/r**2"]}),

@@ -75,3 +75,21 @@ def test_lagrangians_of_first_order_have_as_many_constants_as_coordinates():
     keys = {"q": ["x", "y"], "L": "y*x_dot - (x**2 + y**2)/2", "solution": turn}
     assert said("solution", **keys, constants=["A", "B"]) == "holds"
     assert said("solution", **keys, constants=["A"], parameters={"B": "real"}) == "fails"
+
+
+FALL = {"q": ["r"], "p": ["p"], "parameters": {"r": "positive", "k": "positive"}, "H": "p**2/2 - k/r"}
+FREE = {"q": ["q"], "p": ["p"], "H": "p**2/2"}
+TURN = {"q": "acos(cos(t))", "p": "sin(t)/sqrt(1 - cos(t)**2)"}
+
+
+@pytest.mark.parametrize(("root", "holds"), [("9*k*t**2/2", True), ("9*k*t**2/4", False)])
+def test_a_fall_at_zero_energy_before_and_after_the_centre(root, holds):
+    solution = {"r": f"({root})**(1/3)", "p": f"3*k*t/({root})**(2/3)"}
+    verdict = judge(Claim("a", "hamilton-equations", {**FALL, "domain": ["Ne(t, 0)"], "solution": solution}))
+    assert (verdict.holds, verdict.fails) == (holds, not holds)
+
+
+@pytest.mark.parametrize(("end", "holds"), [("3.1", True), ("pi", True), ("3.2", False), ("7", False)])
+def test_an_arc_of_a_cosine_is_a_motion_until_it_turns_round(end, holds):
+    keys = {**FREE, "solution": TURN, "domain": ["t > 0", f"t < {end}"], "box": {"t": [0.1, 3]}}
+    assert judge(Claim("a", "hamilton-equations", keys)).holds == holds

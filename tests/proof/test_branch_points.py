@@ -23,7 +23,7 @@ from sympy import (
     tanh,
 )  # fmt: skip
 
-from canon.proof.continuity.branch_points import open_surfaces
+from canon.proof.continuity.branching import open_surfaces
 from canon.proof.continuity.continuity import continuity
 from canon.proof.domain.domain import Domain
 

@@ -44,7 +44,7 @@ from canon import time as time_
 from canon.mechanics import is_gauge_equivalent
 from canon.mechanics.canonical.new_hamiltonian import is_new_hamiltonian
 from canon.mechanics.hamilton.symmetry import is_symmetry
-from canon.proof.analytic import is_analytic
+from canon.proof.analytic import is_analytic, proved_sign
 from canon.proof.continuity.constant_steps import is_locally_constant
 from canon.proof.continuity.continuity import continuity
 from canon.proof.continuity.one_sided import cuts_of
@@ -318,3 +318,42 @@ def test_a_jump_is_told_by_the_values_of_the_whole_function():
     assert shown.point["q"] == "1/2"
     assert abs(before - place) < 1e-6
     assert abs(after - place - 1) < 1e-6
+
+
+t = sp.Symbol("t", real=True)
+NONZERO = [
+    (abs(t), (sp.Ne(t, 0),), (t < 5,)),
+    (abs(t) ** sp.Rational(4, 3), (sp.Ne(t, 0),), (t < 5,)),
+    (1 - sp.cos(t) ** 2, (t > 0, t < sp.Rational(31, 10)), (t > 0, t < sp.Rational(32, 10))),
+    (1 - sp.cos(t), (t > 0, t < sp.pi), (t >= 0, t < sp.pi)),
+    (sp.sqrt(1 - sp.cos(t) ** 2), (t > 0, t < sp.pi), (t > 0, t < 4)),
+    (1 - sp.sin(t) ** 2, (t > -sp.pi / 2, t < sp.pi / 2), (t >= -sp.pi / 2, t < sp.pi / 2)),
+    (sp.sqrt(t**2 - 2 * t + 1), (sp.Ne(t, 1),), (sp.Ne(t, 2),)),
+]
+"""What is positive on a first domain, and zero at a place of a second."""
+
+
+@pytest.mark.parametrize(("f", "inside", "beyond"), NONZERO)
+def test_what_vanishes_with_a_root_of_it_alone_is_positive_where_the_root_is_not_zero(f, inside, beyond):
+    assert proved_sign(f, Domain(inside)) == "+"
+    assert proved_sign(f, Domain(beyond)) != "+"
+
+
+POWERS = [(abs(t) ** sp.Rational(4, 3), True), (abs(t) ** sp.Rational(2, 3), True), (t**2, True), (abs(t) ** 3, True),
+          (abs(t), False), (exp(abs(t)) - 1, False), (abs(t) + t**2, False), (abs(sin(t)), False)]  # fmt: skip
+
+
+@pytest.mark.parametrize(("below", "holds"), POWERS)
+@pytest.mark.parametrize("conditions", [(), (sp.Ne(t, 0),), (t > -1, t < 1)])
+def test_poles_are_left_aside_and_jumps_beside_them_are_not(below, holds, conditions):
+    """A quotient is infinite on both sides of t = 0, or goes to zero, or its limits are ±1."""
+    assert continuity(t / below, [t], Domain(conditions)).holds == holds
+    assert continuity(t / below, [t], Domain((t > 0, t < 1))).holds
+
+
+def test_a_quotient_that_turns_at_a_zero_of_its_root_is_not_continuous():
+    f = sp.sin(t) / sp.sqrt(1 - sp.cos(t) ** 2)
+    assert continuity(f, [t], Domain((t > 0, t < sp.Rational(31, 10)))).holds
+    assert not continuity(f, [t], Domain((t > 0, t < sp.Rational(32, 10)))).holds
+    assert not continuity(f, [t], Domain((t > -1, t < 1))).holds
+    assert not continuity(t / abs(t), [t], Domain((t > -1, t < 1))).holds

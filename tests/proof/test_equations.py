@@ -1,11 +1,15 @@
 """Systems of equations: the same solutions or not."""
 
+import time
+
 import pytest
 import sympy as sp
 from sympy import Function, cos, sin
 
 from canon.proof import equivalent_equations
+from canon.proof.domain.domain import EVERYWHERE
 from canon.proof.domain.verdict import Status
+from canon.proof.equivalence import _refuted_in_a_regime
 
 m1, m2, l, g = sp.symbols("m1 m2 l g", positive=True)
 phi, v, x_acc, phi_acc = sp.symbols("phi v x_acc phi_acc", real=True)
@@ -71,3 +75,37 @@ def test_a_generic_point_is_named():
         assert verdict.holds
         assert verdict.assumed == tuple(f"generic point: {said}" for said in left_open)
     assert equivalent_equations([(k - k) * right[0]], right, [x_acc]).fails
+
+
+SILENT = [
+    abs(v) + v,
+    sp.Max(v, 0),
+    sp.Piecewise((0, v < 1), (1, True)),
+    1 + sp.sign(v * phi),
+    abs(abs(v) - 1) - abs(v) + 1,
+]
+LOUD = [abs(v) + 1, sp.Max(v, 1), v * sp.Max(v, 1), sp.sign(v) * abs(phi), 2 + sp.sign(v * phi)]
+
+
+@pytest.mark.parametrize("factor", SILENT, ids=str)
+def test_a_factor_that_is_zero_on_an_open_part_is_found_there(factor):
+    verdict = equivalent_equations([x_acc * factor - v * factor], [x_acc - v], [x_acc])
+    assert verdict.fails
+    assert verdict.counterexample is not None
+    assert " where " in verdict.feedback
+
+
+@pytest.mark.parametrize("factor", LOUD, ids=str)
+def test_a_factor_that_is_zero_at_single_places_is_none(factor):
+    assert equivalent_equations([(x_acc - v) * factor], [x_acc - v], [x_acc]).holds
+    assert equivalent_equations([(x_acc - v) * factor], [x_acc + v], [x_acc]).fails
+
+
+def test_pieces_that_turn_on_the_unknowns_are_not_looked_at_one_by_one():
+    """|a| + a = 2l has the one solution a = l."""
+    with pytest.raises(ValueError, match="not affine"):
+        equivalent_equations([abs(x_acc) + x_acc - 2 * l], [x_acc - l], [x_acc])
+    folded = _refuted_in_a_regime(
+        [abs(x_acc) + x_acc - 2 * l], [x_acc - l], [x_acc], EVERYWHERE, time.monotonic() + 5, str
+    )
+    assert folded is None

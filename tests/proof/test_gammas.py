@@ -2,6 +2,7 @@
 
 import pytest
 from sympy import (
+    E,
     LambertW,
     Rational,
     RisingFactorial,
@@ -130,3 +131,31 @@ def test_each_branch_of_lambert_w_is_its_own():
     assert equal(LambertW(x, -1), LambertW(x), below).fails
     assert equal(LambertW(x * exp(x), -1), x, Domain((x > -1, x < 0))).fails
     assert equal(LambertW(x * exp(x)), x, Domain((x > -1,))).holds
+
+
+DISGUISED = [
+    (E * (x * exp(x) + exp(x)), x + 1, x > -2, x < -2),
+    ((p + x - 2) * exp(p) * exp(x - 2), p + x - 2, x > 2, x < 1),
+    ((x**2 - 1) * exp(x**2) / E, x**2 - 1, x > -9, None),
+    ((x**2 - 2) * exp(x**2) / E**2, x**2 - 2, x > 1, x < 1),
+    (-E * x * exp(-x) + E * exp(-x), 1 - x, x < 2, x > 2),
+    (x * exp(3 * x) * exp(-2 * x), x, x >= -1, x < 0),
+]
+"""u exp u written otherwise, u, where u ≥ −1, and where it is less at some places."""
+
+
+@pytest.mark.parametrize(("z", "u", "above", "below"), DISGUISED)
+def test_lambert_w_undoes_an_argument_in_other_clothes_on_its_branch(z, u, above, below):
+    assert equal(LambertW(z), u, Domain((above,))).holds
+    assert equal(LambertW(z), u + 1, Domain((above,))).fails
+    assert equal(LambertW(2 * z), u, Domain((above,))).fails
+    if below is not None:
+        assert equal(LambertW(z), u, Domain((below,))).fails
+        assert equal(LambertW(z), u).fails
+    assert equal(LambertW(z, -1), u, Domain((above,))).fails
+
+
+def test_the_lower_branch_of_lambert_w_undoes_what_is_at_most_minus_one():
+    z = E * (x * exp(x) + exp(x))
+    assert equal(LambertW(z, -1), x + 1, Domain((x <= -2,))).holds
+    assert equal(LambertW(z, -1), x + 1, Domain((x < -1,))).fails

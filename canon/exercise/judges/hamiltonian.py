@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import sympy as sp
-from sympy import Expr, Symbol
-
 from canon.exercise.judges.conserved import (
     NOT_OF_THE_STATE,
     mechanical_system,
@@ -29,6 +26,8 @@ from canon.mechanics.hamilton.legendre_pair import hamiltonian
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from sympy import Expr, Symbol
 
     from canon.exercise.sheet.reading import Reading
 
@@ -107,8 +106,7 @@ def constant_of_motion(reading: Reading) -> Iterator[Question]:
 def equality(reading: Reading) -> Iterator[Question]:
     """Both sides are equal on the whole domain."""
     lhs, rhs = reading.expression("lhs"), reading.expression("rhs")
-    pointwise = not any(side.has(sp.Derivative, sp.Subs, sp.DiracDelta) for side in (lhs, rhs))
-    yield Same((Part("lhs", lhs, rhs, key="lhs"),), reading.domain, pointwise=pointwise)
+    yield Same((Part("lhs", lhs, rhs, key="lhs"),), reading.domain)
 
 
 def _rates(reading: Reading, I: Expr) -> dict[Symbol, Expr]:

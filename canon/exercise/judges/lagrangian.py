@@ -37,6 +37,7 @@ from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.reduction.routh import routhian as routh
 from canon.proof.continuity.smooth import PIECED
 from canon.proof.domain.domain import Domain
+from canon.proof.domain.verdict import Undecided
 from canon.proof.trees.affine_form import is_affine
 
 if TYPE_CHECKING:
@@ -64,7 +65,10 @@ def euler_lagrange(reading: Reading) -> Iterator[Question]:
 
 
 def dissipative(reading: Reading) -> Iterator[Question]:
-    """Equations with d/dt ∂L/∂q̇ − ∂L/∂q + ∂F/∂q̇ = Q, and dE/dt = Σ q̇ (Q − ∂F/∂q̇) − ∂L/∂t."""
+    """Equations with d/dt ∂L/∂q̇ − ∂L/∂q + ∂F/∂q̇ = Q, and dE/dt = Σ q̇ (Q − ∂F/∂q̇) − ∂L/∂t.
+
+    What is claimed is what is asked: an answer that gives dE/dt alone, without accelerations, is complete.
+    """
     q, t = reading.symbols("q"), reading.time
     damping = reading.expression("F", sp.S.Zero)
     applied = reading.expressions("Qnc", like="q") if reading.has("Qnc") else (sp.S.Zero,) * len(q)
@@ -72,8 +76,6 @@ def dissipative(reading: Reading) -> Iterator[Question]:
     lagrangian = lagrangian_of(reading, forces=forces)
     if reading.has("claim"):
         yield from same_motion(reading, lagrangian)
-    else:
-        yield Determines(lambda: stay_open([acceleration(x) for x in q]))
     if reading.has("energy_rate"):
         claimed = reading.expression("energy_rate")
         rate = sp.Add(*(velocity(x) * Q for x, Q in zip(q, forces, strict=True)), -lagrangian.L.diff(t))
@@ -151,7 +153,7 @@ def lagrangian_equivalence(reading: Reading) -> Iterator[Question]:
         systems = [Lagrangian(L, q, t=t).equations for L in (second, first)]
         accelerations = tuple(acceleration(x) for x in q)
         yield SameEquations(systems[0], systems[1], accelerations, reading.domain, time=t)
-        check_gauge_term(_in_motion(second - first, q), q, t, reading.domain)
+        check_gauge_term(_in_motion(second - first, q, t), q, t, reading.domain)
         yield from _no_steps(first, second, q, reading)
     elif relation != "gauge":
         reading.fault("relation", "write gauge or equations")
@@ -164,27 +166,41 @@ def lagrangian_equivalence(reading: Reading) -> Iterator[Question]:
     else:
         yield from _is_affine_in_velocities(second - first, q, reading.domain)
         yield Same(tuple(_total_derivative_conditions(second - first, q, t)), reading.domain)
-        check_gauge_term(_in_motion(second - first, q), q, t, reading.domain)
+        check_gauge_term(_in_motion(second - first, q, t), q, t, reading.domain)
         yield from _no_steps(first, second, q, reading)
         yield Determines(lambda: stay_open(["F"]))
 
 
 def _no_steps(first: Expr, second: Expr, q: Sequence[Symbol], reading: Reading) -> Iterator[Question]:
     """Yield whether either Lagrangian at rest has a step that the other has not: it gives an impulse there."""
-    rest = [_at_rest(L, q) for L in (first, second)]
+    rest = [_at_rest(L, q, reading.time) for L in (first, second)]
     for mine, other, name in ((rest[0], rest[1], "L1"), (rest[1], rest[0], "L2")):
         moves = [part for part in mine.atoms(*PIECED) if part.has(reading.time)]
         if not moves:  # a step that moves may come from a kink of F
             yield is_continuous(mine, q, reading.domain, f"{name} at rest", (other,))
 
 
-def _at_rest(L: Expr, q: Sequence[Symbol]) -> Expr:
-    return substitute(L, {velocity(x): sp.S.Zero for x in q})
+def _at_rest(L: Expr, q: Sequence[Symbol], t: Symbol) -> Expr:
+    """Return a Lagrangian at rest, but for terms that hold velocities alone: these have no step anywhere.
+
+    They need no value at rest, as ẋ log ẋ has none.
+
+    Raises
+    ------
+    Undecided
+        Where another term has no value at rest.
+    """
+    velocities = [velocity(x) for x in q]
+    terms = [f for f in sp.Add.make_args(sp.expand(L)) if not f.has(*velocities) or f.has(*q, t)]
+    rest = substitute(sp.Add(*terms), dict.fromkeys(velocities, sp.S.Zero))
+    if rest.has(sp.nan, sp.zoo, sp.oo):
+        raise Undecided("a Lagrangian has no value at rest, so whether it jumps somewhere was not decided")
+    return rest
 
 
-def _in_motion(L: Expr, q: Sequence[Symbol]) -> Expr:
+def _in_motion(L: Expr, q: Sequence[Symbol], t: Symbol) -> Expr:
     """Return the part of a Lagrangian that holds velocities."""
-    return sp.expand(L - _at_rest(L, q))
+    return sp.expand(L - _at_rest(L, q, t))
 
 
 def routhian_in_momenta(

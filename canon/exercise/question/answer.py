@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,7 @@ from canon.exercise.sheet.kind import Shape
 from canon.expression.symbols.symbol import Coordinate, Rate, velocity
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.linear import eliminate
+from canon.proof.definedness.open_regimes import regimes
 from canon.proof.domain.verdict import Undecided
 from canon.proof.vanish import vanishes
 
@@ -152,6 +154,8 @@ def equations_missing(
 ) -> tuple[str, ...]:
     """Return what claimed equations leave open of the unknowns that the right ones determine.
 
+    That may be so on an open part of the domain alone, where a factor with pieces is zero.
+
     Raises
     ------
     Undecided
@@ -165,12 +169,31 @@ def equations_missing(
     ('x, y stay open: 1 equation is missing',)
     >>> equations_missing([x + y, x - y], [x - 1, y], [x, y], Domain())
     ()
+    >>> a = sp.Symbol("a", real=True)
+    >>> equations_missing([sp.Max(a, 0) * x, y], [x - 1, y], [x, y], Domain())
+    ('x stays open: 1 equation is missing, where a < 0',)
     """
     told, whole = (sp.Matrix([[e.diff(u) for u in unknowns] for e in some]) for some in (claimed, right))
     if told.has(*unknowns):
         raise Undecided(
             "an equation is not affine in the unknowns, so what it leaves open was not decided; solve it for them"
         )
+    if found := _rank_missing(told, whole, unknowns, domain):
+        return found
+    entries = [*told.flat(), *whole.flat()]
+    for regime in regimes(entries, domain, time.monotonic() + SIDE_SECONDS):
+        size = told.rows * told.cols
+        first = sp.Matrix(told.rows, told.cols, list(regime.formulas[:size]))
+        second = sp.Matrix(whole.rows, whole.cols, list(regime.formulas[size:]))
+        if found := _rank_missing(first, second, unknowns, regime.domain):
+            return tuple(f"{sentence}, where {regime}" for sentence in found)
+    return ()
+
+
+def _rank_missing(
+    told: sp.Matrix, whole: sp.Matrix, unknowns: Sequence[Symbol], domain: Domain
+) -> tuple[str, ...]:
+    """Return what equations with some slopes leave open that those with others determine, at generic points."""
     free, known = eliminate(told, domain=domain), eliminate(whole, domain=domain)
     missing = known.rank - free.rank
     if missing <= 0:

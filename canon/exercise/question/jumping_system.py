@@ -20,7 +20,7 @@ from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.analytic import proved_sign
-from canon.proof.continuity.branch_points import open_surfaces
+from canon.proof.continuity.branching import open_surfaces
 from canon.proof.continuity.continuity import meets
 from canon.proof.continuity.jumps import continued, is_edge
 from canon.proof.continuity.one_sided import cuts_of, off_the_kinks

@@ -113,8 +113,6 @@ class Same:
         What would be right.
     said
         A sentence on a component that was refuted, where no better diagnosis is found.
-    pointwise
-        Whether values are compared as they are written, so that sign(x²) = 1 is wrong at x = 0.
     answers
         The key that the answer stands under, where it is told only once the claim is judged to hold with it.
     """
@@ -123,7 +121,6 @@ class Same:
     domain: Domain
     answer: Answer | None = None
     said: Callable[[Part], str] | None = None
-    pointwise: bool = False
     answers: str = ""
 
 
@@ -353,9 +350,7 @@ def _all_vanish(question: Same, deadline: Deadline) -> Verdict:
     """Ask for all components at once, so that one that is easily refuted spares the long proofs of the others."""
     parts, said = question.parts, question.said
     sides = [(part.seen(part.claimed), part.right) for part in parts]
-    off = off_kinks(
-        [side for pair in sides for side in pair], question.domain, touching=not question.pointwise
-    )
+    off = off_kinks([side for pair in sides for side in pair], question.domain)
     residuals = [off.seen(claimed - right) for claimed, right in sides]
     verdict = off.ask(lambda there: vanishes(sp.Matrix(residuals), there, budget=deadline.left))
     verdict = replace(verdict, feedback="")

@@ -85,7 +85,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             {"F": _T, "Qnc": _TS, "claim": _TS, "energy_rate": _T},
             one_of=(("claim",), ("energy_rate",)),
             answer=("claim", "energy_rate"),
-            unknowns="the accelerations, and dE/dt without them where it is claimed",
+            unknowns="the accelerations where equations are claimed, and dE/dt without them where it is claimed",
         ),
         "multiplier-holonomic": replace(_CONSTRAINED, judge="constrained.multiplier_holonomic"),
         "nonholonomic": replace(_CONSTRAINED, judge="constrained.nonholonomic"),

@@ -17,8 +17,8 @@ from canon.flow.adaptive.regime_orbits import RegimeOrbit, RegimeOrbits
 from canon.flow.adaptive.taylor_orbit import Slice
 from canon.flow.kinked.next_regime import passage, signs_at_start
 from canon.flow.kinked.place import Place
+from canon.flow.kinked.regime_signs import HELD
 from canon.flow.kinked.saltation import saltation
-from canon.flow.kinked.signs import HELD
 from canon.flow.run.event import Crossing, Event
 from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from canon.array import Array
     from canon.flow.adaptive.taylor_events import TaylorEvents
     from canon.flow.adaptive.taylor_orbit import TaylorOrbit
+    from canon.flow.kinked.regime_signs import Signs
     from canon.flow.kinked.regimes import Kinks
-    from canon.flow.kinked.signs import Signs
     from canon.flow.method.method import Taylor
     from canon.flow.run.event import PreparedEvent
 

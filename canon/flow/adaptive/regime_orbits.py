@@ -12,14 +12,14 @@ from canon.flow.adaptive.held_steps import spacing
 from canon.flow.adaptive.taylor_events import TaylorEvents
 from canon.flow.adaptive.taylor_orbit import TaylorOrbit, orbits_of
 from canon.flow.kinked.place import Place
-from canon.flow.kinked.signs import HELD
+from canon.flow.kinked.regime_signs import HELD
 from canon.flow.run.event import Event, PreparedEvent
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from canon.flow.kinked.regime_signs import Signs
     from canon.flow.kinked.regimes import Kinks, Regime
-    from canon.flow.kinked.signs import Signs
 
 __all__ = ["RegimeOrbit", "RegimeOrbits"]
 

@@ -13,9 +13,9 @@ from canon.flow.adaptive.component_sizes import sizes_of
 from canon.flow.adaptive.zeros_in_step import TooFastError, Zero, zeros_in_step
 from canon.flow.kinked.next_regime import passage, signs_at_start
 from canon.flow.kinked.place import Place
+from canon.flow.kinked.regime_signs import HELD
 from canon.flow.kinked.regimes import Regime
 from canon.flow.kinked.saltation import saltation
-from canon.flow.kinked.signs import HELD
 from canon.flow.run.compiled_nodes import CompiledNodes, compiled_nodes
 from canon.flow.run.event import Crossing, Event
 from canon.flow.run.non_finite_state import NonFiniteStateError, PiledUpError, time_and_state
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence
 
     from canon.array import Array
+    from canon.flow.kinked.regime_signs import Signs
     from canon.flow.kinked.regimes import Kinks
-    from canon.flow.kinked.signs import Signs
     from canon.flow.run.event import PreparedEvent
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 

@@ -11,49 +11,46 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from canon.flow.kinked.signs import HELD
-
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
+
+    from sympy import Symbol
 
     from canon.expression.graph.graph import Graph
-    from canon.flow.kinked.regimes import Kinks, Regime
-    from canon.flow.kinked.signs import Signs
 
 __all__ = ["shares_that_hold"]
 
 
-def shares_that_hold(kinks: Kinks, signs: Signs, beside: Regime) -> Mapping[int, int] | None:
+def shares_that_hold(
+    graph: Graph,
+    inputs: Sequence[Symbol],
+    zeros: Mapping[int, int],
+    rates: Callable[[Mapping[int, int]], Sequence[int]],
+) -> Mapping[int, int] | None:
     """Return what stands in place of the signs of held functions, by their number; None where nothing is determined.
 
     Parameters
     ----------
-    kinks, signs
-        The switching functions, of which several are held.
-    beside
-        The regime where those are positive.
+    graph, inputs
+        The graph, and the variables of the state with the time.
+    zeros
+        The nodes of the held functions, by their number.
+    rates
+        Returns the nodes of the state's rates with nodes in place of these signs.
     """
-    held = [k for k, sign in enumerate(signs) if sign == HELD]
-    if any(k in beside.weak for k in held):
-        return None
-    graph = kinks.system.graph
-    shares = {k: graph.symbol(sp.Dummy(f"share_{k}", real=True)) for k in held}
-    rates = kinks.folded(signs, [*kinks.system.velocity, *kinks.system.force], shares)
-    zeros = kinks.folded(beside.signs, [kinks.functions[k] for k in held])
-    speeds = [_along(graph, kinks, zero, rates) for zero in zeros]
+    shares = {k: graph.symbol(sp.Dummy(f"share_{k}", real=True)) for k in zeros}
+    moving = [*rates(shares), graph.one]
+    speeds = [
+        graph.add([graph.mul(pair) for pair in zip(graph.gradient(zero, inputs), moving, strict=True)])
+        for zero in zeros.values()
+    ]
     unknown = [graph.nodes[share].value for share in shares.values()]
     B = [graph.gradient(speed, unknown) for speed in speeds]
     if not graph.all_symbols([each for row in B for each in row]).isdisjoint(unknown):
         return None
     a = graph.substitute(speeds, dict.fromkeys(shares.values(), graph.zero))
     solved = _solved(graph, B, [graph.negative(each) for each in a])
-    return None if solved is None else dict(zip(held, solved, strict=True))
-
-
-def _along(graph: Graph, kinks: Kinks, node: int, rates: Sequence[int]) -> int:
-    """Return the time derivative of a function along rates."""
-    slopes = graph.gradient(node, kinks.system.inputs)
-    return graph.add([graph.mul(pair) for pair in zip(slopes, (*rates, graph.one), strict=True)])
+    return None if solved is None else dict(zip(zeros, solved, strict=True))
 
 
 def _solved(graph: Graph, matrix: Sequence[Sequence[int]], right: Sequence[int]) -> list[int] | None:

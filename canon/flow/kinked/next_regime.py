@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.flow.kinked.regime_signs import HELD, flipped, held_in, put
 from canon.flow.kinked.rest import is_kept, nothing_moves
-from canon.flow.kinked.signs import HELD, flipped, held_in, put
 from canon.flow.run.non_finite_state import NonFiniteStateError, time_and_state
 
 if TYPE_CHECKING:
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
     from canon.array import Array
     from canon.flow.kinked.place import Place
+    from canon.flow.kinked.regime_signs import Signs
     from canon.flow.kinked.regimes import Kinks, Regime
-    from canon.flow.kinked.signs import Signs
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = ["Passage", "passage", "settled", "signs_at_start", "vanishing"]

@@ -17,13 +17,13 @@ from typing import TYPE_CHECKING
 from canon.cached_property import cached_property
 from canon.expression.graph.algebra import factored
 from canon.flow.kinked.equivalent_control import shares_that_hold
-from canon.flow.kinked.signs import HELD, held_in, put
+from canon.flow.kinked.regime_signs import HELD, held_in, put
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from canon.expression.graph.graph import Graph, Node
-    from canon.flow.kinked.signs import Signs
+    from canon.flow.kinked.regime_signs import Signs
     from canon.flow.run.event import PreparedEvent
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
@@ -233,9 +233,20 @@ class Kinks:
     def shares(self, signs: Signs) -> Mapping[int, int] | None:
         """Return what stands in place of the signs of several functions that are held; None where nothing tells."""
         if signs not in self._shares:
-            beside = self.regime(_on_their_positive_side(signs))
-            self._shares[signs] = shares_that_hold(self, signs, beside)
+            self._shares[signs] = self._shares_found(signs)
         return self._shares[signs]
+
+    def _shares_found(self, signs: Signs) -> Mapping[int, int] | None:
+        held, beside = held_in(signs), self.regime(_on_their_positive_side(signs))
+        if any(k in beside.weak for k in held):
+            return None
+        found = self.folded(beside.signs, [self.functions[k] for k in held])
+        return shares_that_hold(
+            self.system.graph,
+            self.system.inputs,
+            dict(zip(held, found, strict=True)),
+            lambda shares: self.folded(signs, self._rates(self.system), shares),
+        )
 
     def rate_at_rest(self, signs: Signs, k: int) -> int | None:
         """Return the rate of a variable where it is 0, of one whose rate has a root there and does not jump.

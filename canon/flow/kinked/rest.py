@@ -10,12 +10,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from canon.flow.kinked.signs import HELD, put
+from canon.flow.kinked.regime_signs import HELD, put
 
 if TYPE_CHECKING:
     from canon.flow.kinked.place import Place
+    from canon.flow.kinked.regime_signs import Signs
     from canon.flow.kinked.regimes import Kinks
-    from canon.flow.kinked.signs import Signs
 
 __all__ = ["is_kept", "nothing_moves"]
 

@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.flow.kinked.next_regime import settled
-from canon.flow.kinked.signs import HELD
+from canon.flow.kinked.regime_signs import HELD
 
 if TYPE_CHECKING:
     from canon.array import Array
     from canon.flow.kinked.next_regime import Passage
     from canon.flow.kinked.place import Place
+    from canon.flow.kinked.regime_signs import Signs
     from canon.flow.kinked.regimes import Kinks
-    from canon.flow.kinked.signs import Signs
 
 __all__ = ["jumps_near", "saltation"]
 

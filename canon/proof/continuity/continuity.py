@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 
 from canon.proof.analytic import is_positive_between, is_uncut, proved_sign
-from canon.proof.continuity.branch_points import open_surfaces
+from canon.proof.continuity.beside_poles import meet_beside_poles
+from canon.proof.continuity.branching import open_surfaces
 from canon.proof.continuity.constant_steps import Fault, nonzero, step_between_pieces
 from canon.proof.continuity.hidden_jumps import hidden_jump
 from canon.proof.continuity.jumps import Jump, continued, find_jump, is_edge
@@ -37,7 +38,7 @@ from canon.proof.domain.relations import parts_of
 from canon.proof.domain.verdict import Counterexample, Evidence, Status, Verdict
 from canon.proof.trees.anatomy import anatomy
 from canon.proof.trees.sympy_types import arguments, free_symbols
-from canon.proof.vanish import vanishes_where_defined
+from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -67,7 +68,7 @@ def continuity(
     """Tell whether a function is continuous wherever it has a value near both sides, poles left aside.
 
     It may jump only where a function with pieces has its cuts, where both continuations must be proved equal, and where
-    roots and logarithms branch or a function is taken of a pole, where :mod:`canon.proof.continuity.branch_points` must
+    roots and logarithms branch or a function is taken of a pole, where :mod:`canon.proof.continuity.branching` must
     prove it. What is not real on one side of such a surface is claimed on the other only.
 
     Parameters
@@ -192,7 +193,8 @@ def _is_rough(term: Expr, moving: Sequence[Symbol], domain: Domain) -> bool:
 
 
 def _is_divided(term: Expr, moving: Sequence[Symbol], domain: Domain) -> bool:
-    """Tell whether a term has a denominator that may vanish."""
+    """Tell whether a term has a denominator that may vanish; at places that the domain leaves out too."""
+    domain = Domain(tuple(c for c in parts_of(domain.conditions) if not isinstance(c, sp.Ne)))
     poles = [p.base for p in term.atoms(sp.Pow) if p.exp.is_negative and p.has(*moving)]
     return not all(
         proved_sign(base, domain) in ("+", "-") or is_positive_between(base, domain) for base in poles
@@ -226,13 +228,23 @@ def _vanish_on_a_surface(cut: Cut, moving: Sequence[Symbol], domain: Domain) -> 
 
 
 def _touching_roots(term: Expr, moving: Sequence[Symbol], domain: Domain) -> list[Expr]:
-    """Return roots whose radicand may come down to zero on a surface and rise again, as 1 − sin² does."""
+    """Return roots whose radicand may come down to zero on a surface and rise again, as 1 − sin² does.
+
+    Of |u| with a slope that does not vanish both sides are looked at by its cut.
+    """
     roots = [p for p in term.atoms(sp.Pow) if p.exp.is_integer is False and p.base.has(*moving)]
-    known = {cut.part for cut in cuts_of(term, moving)}
+    cuts = cuts_of(term, moving)
+    known = {cut.part for cut in cuts} | {p for p in roots for cut in cuts if _follows(p.base, cut, moving)}
     touching = [r for r in roots if r not in known and proved_sign(r.base, domain) == "0+"]
     return [
         r for r in touching if not (is_uncut(r.base, r.exp, domain) or is_positive_between(r.base, domain))
     ]
+
+
+def _follows(base: Expr, cut: Cut, moving: Sequence[Symbol]) -> bool:
+    """Tell whether what a root is taken of is |u|, and u changes its sign wherever it vanishes."""
+    slopes = (cast("Expr", cut.gap.diff(s)) for s in moving)
+    return base == cut.part and isinstance(base, sp.Abs) and any(f.is_number and f.is_nonzero for f in slopes)
 
 
 def _is_pieced(part: Expr, domain: Domain) -> bool:
@@ -371,17 +383,27 @@ def _meets(f: Expr, cut: Cut, moving: Sequence[Symbol], domain: Domain, deadline
 def meets(f: Expr, gap: Expr, moving: Sequence[Symbol], domain: Domain, budget: float) -> bool:
     """Tell whether a function is proved to be continuous across a surface: both continuations are equal on it.
 
+    Where they have no value on it, as their denominators vanish, both must be infinite.
+
     Examples
     --------
     >>> x = sp.Symbol("x", real=True)
     >>> [meets(f, x, [x], EVERYWHERE, 1.0) for f in (abs(x), sp.sign(x), x * sp.sign(x) + sp.sign(x - 1))]
     [True, False, True]
     """
-    change = continued(f, gap, moving, up=True) - continued(f, gap, moving, up=False)
-    if change == 0:
+    above, below = (continued(f, gap, moving, up=up) for up in (True, False))
+    if (above - below).has(sp.nan, sp.zoo):
+        return False
+    ratio = proportion(above - below, gap)
+    if above - below == 0 or (ratio is not None and sp.expand(above - below - ratio * gap) == 0):
         return True
     plain: dict[Expr, Expr] = {s: sp.Dummy(s.name, real=True) for s in nonzero(gap, moving)}
     kept = (c for c in parts_of(domain.conditions) if not isinstance(c, sp.Ne))
     on_gap = (*kept, cast("Boolean", sp.Eq(gap, 0, evaluate=False)))
     there = Domain(tuple(cast("Boolean", c.xreplace(plain)) for c in on_gap))
-    return vanishes_where_defined(cast("Expr", change.xreplace(plain)), there, budget).holds
+    above, below, gap = (cast("Expr", g.xreplace(plain)) for g in (above, below, gap))
+    verdict = vanishes(above - below, there, budget)
+    if verdict.holds or verdict.certificate == "ball":
+        return verdict.holds
+    free = [plain.get(s, s) for s in moving]
+    return meet_beside_poles(above, below, gap, [s for s in free if isinstance(s, sp.Symbol)], there, budget)

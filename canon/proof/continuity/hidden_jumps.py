@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
-    from canon.proof.continuity.branch_points import Branch, OpenSurface
+    from canon.proof.continuity.branching import Branch, OpenSurface
     from canon.proof.continuity.jumps import Jump
     from canon.proof.domain.domain import Domain
 
@@ -40,7 +40,7 @@ def hidden_jump(
 
     Examples
     --------
-    >>> from canon.proof.continuity.branch_points import open_surfaces
+    >>> from canon.proof.continuity.branching import open_surfaces
     >>> from canon.proof.domain.domain import Domain
     >>> q = sp.Symbol("q", real=True)
     >>> f = sp.sqrt(q - 1) * sp.sqrt(q + 1) / sp.sqrt(q**2 - 1)

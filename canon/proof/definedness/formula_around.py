@@ -13,11 +13,15 @@ from canon.proof.trees.replacement import KINKED
 from canon.proof.trees.sympy_types import arguments
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from sympy import Expr, Symbol
 
-__all__ = ["NoPiece", "formula_around", "put_in"]
+__all__ = ["NoPiece", "formula_around", "holds_around", "neighbourhood", "put_in"]
+
+
+LARGEST_GAP = 200
+"""Size of a function that is written out."""
 
 
 class NoPiece(Exception):
@@ -43,6 +47,45 @@ def formula_around(expr: Expr, point: Mapping[Symbol, sp.Rational]) -> Expr:
     x**2 - x
     """
     return cast("Expr", _Neighbourhood(point).formula(expr))
+
+
+def neighbourhood(
+    exprs: Iterable[Expr], point: Mapping[Symbol, sp.Rational]
+) -> tuple[list[Expr], dict[Expr, int]]:
+    """Return formulas of expressions around a point, and the signs there of what their pieces turn on.
+
+    Where these signs are the same the expressions equal the formulas.
+
+    Raises
+    ------
+    NoPiece, NotDecided
+        As :func:`formula_around` does.
+
+    Examples
+    --------
+    >>> x, y = sp.symbols("x y", real=True)
+    >>> neighbourhood([abs(x - abs(y))], {x: sp.Integer(1), y: sp.Integer(-2)})
+    ([-x - y], {y: -1, x + y: -1})
+    """
+    around = _Neighbourhood(point)
+    return [cast("Expr", around.formula(expr)) for expr in exprs], around.gaps()
+
+
+def holds_around(condition: sp.Basic, point: Mapping[Symbol, sp.Rational]) -> bool:
+    """Tell whether a condition certainly holds in a neighbourhood of a point.
+
+    Raises
+    ------
+    NotDecided
+        At a bound, or so near it that the precision does not tell.
+
+    Examples
+    --------
+    >>> x = sp.Symbol("x", real=True)
+    >>> holds_around(sp.Or(x <= 0, sp.Eq(x, 5)), {x: sp.Integer(-1)})
+    True
+    """
+    return _Neighbourhood(point).holds(condition)
 
 
 def put_in(expr: Expr, by: Mapping[sp.Basic, sp.Basic]) -> Expr:
@@ -72,10 +115,18 @@ def _rebuilt(part: sp.Basic, inner: Sequence[sp.Basic]) -> sp.Basic:
     return rebuild(*inner, evaluate=False) if kept else rebuild(*inner)
 
 
+def _written_out(gap: Expr) -> Expr:
+    """Return a small function as a sum: moduli that were put in leave brackets."""
+    if anatomy([gap]).tree > LARGEST_GAP:
+        return gap
+    return cast("Expr", sp.expand(gap, log=False, power_base=False, power_exp=False))
+
+
 class _Neighbourhood:
     def __init__(self, point: Mapping[Symbol, sp.Rational]) -> None:
         self.point = point
         self.known: dict[sp.Basic, sp.Basic] = {}
+        self.signs: dict[Expr, int] = {}
 
     def formula(self, part: sp.Basic) -> sp.Basic:
         if part not in self.known:
@@ -96,19 +147,19 @@ class _Neighbourhood:
 
     def _piece(self, part: sp.Piecewise) -> sp.Basic:
         for piece, condition in cast("tuple[tuple[Expr, sp.Basic], ...]", part.args):
-            if self._holds(condition):
+            if self.holds(condition):
                 return self.formula(piece)
         raise NoPiece
 
-    def _holds(self, condition: sp.Basic) -> bool:
+    def holds(self, condition: sp.Basic) -> bool:
         if condition in (sp.true, sp.false):
             return condition == sp.true
         if isinstance(condition, sp.And):
-            return all(self._holds(c) for c in condition.args)
+            return all(self.holds(c) for c in condition.args)
         if isinstance(condition, sp.Or):
-            return any(self._holds(c) for c in condition.args)
+            return any(self.holds(c) for c in condition.args)
         if isinstance(condition, sp.Not):
-            return not self._holds(condition.args[0])
+            return not self.holds(condition.args[0])
         if not isinstance(condition, Relational):
             raise Unmodelled(f"the condition {condition} is not modelled")
         left, right = arguments(condition)
@@ -130,7 +181,21 @@ class _Neighbourhood:
             raise NotDecided("a bound of a piece")
         if not ball.imag.is_zero():
             raise Undefined("complex numbers are compared")
-        return 1 if ball.real > 0 else -1
+        sign = 1 if ball.real > 0 else -1
+        if gap.free_symbols:
+            self.signs[gap] = sign
+        return sign
+
+    def gaps(self) -> dict[Expr, int]:
+        """Return the signs of what was asked, as formulas around the point; |q| < 1 stays so at its kink q = 0."""
+        found: dict[Expr, int] = {}
+        for gap, sign in list(self.signs.items()):
+            try:
+                formula = cast("Expr", self.formula(gap))
+            except (NoPiece, NotDecided, Undefined, Unmodelled):
+                formula = gap
+            found[_written_out(formula)] = sign
+        return found | {_written_out(gap): sign for gap, sign in self.signs.items() if not gap.has(*KINKED)}
 
     def _smooth(self, part: sp.Basic, inner: list[Expr]) -> sp.Basic:
         if isinstance(part, sp.Max | sp.Min):

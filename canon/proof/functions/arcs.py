@@ -140,7 +140,8 @@ def _atanh(n: Forms, z: Fraction) -> Fraction:
 def _lambert_w(n: Forms, expr: sp.Basic, z: Fraction) -> Fraction:
     """Return W₀(z) or W₋₁(z): g where z = g exp g with g ≥ −1, or g ≤ −1; otherwise a kernel.
 
-    W₀(z) ≥ 0 for z ≥ 0 and W₋₁(z) < 0 for −1/e ≤ z < 0.
+    W₀(z) ≥ 0 for z ≥ 0 and W₋₁(z) < 0 for −1/e ≤ z < 0. Both are asked of the domain for each g: that z = g exp g is
+    an identity, and that g lies on the branch; u ↦ u exp u is injective on each of the two rays (NIST DLMF 4.13).
     """
     t = n.tower
     one, upper = t.number(1), len(expr.args) == 1
@@ -160,7 +161,11 @@ def _lambert_w(n: Forms, expr: sp.Basic, z: Fraction) -> Fraction:
 
 
 def _inverse_candidates(n: Forms, z: Fraction) -> Iterator[Fraction]:
-    """Yield what may be W(z): the arguments of exponentials in z, and logarithms in z with simple multiples."""
+    """Yield what may be W(z): the arguments of exponentials in z, and logarithms in z with simple multiples.
+
+    Where z = g exp g every term of z has the same exponentials, so that g is the sum of their arguments in one of them.
+    """
+    yield _exponent(n, z)
     for k in n.tower.used(z.num):
         candidate = n.tower.generators[k]
         if candidate[0] == "exp":
@@ -168,6 +173,14 @@ def _inverse_candidates(n: Forms, z: Fraction) -> Iterator[Fraction]:
         elif candidate[0] == "log":
             for multiple in SIMPLE_MULTIPLES:
                 yield n.scaled(multiple, Fraction(n.tower.monomial(k)))
+
+
+def _exponent(n: Forms, z: Fraction) -> Fraction:
+    """Return what stands in the exponent of the first term of z: v + 1 where z is (v + 1) e exp v."""
+    parts = [(z.num, 1), *((n.tower.base(i), -e) for i, e in z.den)]
+    powers = [(k, sign * e) for p, sign in parts for k, e in next(iter(n.tower.terms(p)), ((), 0))[0]]
+    named = [(n.tower.generators[k], e) for k, e in powers]
+    return n.tower.sum(n.scaled(e, n.arguments[kernel]) for kernel, e in named if kernel[0] == "exp")
 
 
 def cos_sin_of_arc(n: Forms, kernel: tuple[object, ...], r: fmpq) -> tuple[Fraction, Fraction] | None:

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Search",
+    "decimals",
     "first_counterexample",
     "look_for_counterexample",
     "look_in_corners",
@@ -322,11 +323,18 @@ def _agreeing_digits(left: acb, right: acb, difference: acb) -> int:
 
 def _record(left: acb, right: acb, point: Mapping[Symbol, sp.Rational], result: Search) -> None:
     names = {s.name: str(number) for s, number in point.items()} | result.functions
-    result.counterexample = Counterexample(names, *_texts(left, right))
+    result.counterexample = Counterexample(names, *decimals(left, right))
 
 
-def _texts(left: acb, right: acb) -> tuple[str, str, int]:
-    """Return both values in as many certain digits as tell them apart."""
+def decimals(left: acb, right: acb | None = None) -> tuple[str, str, int]:
+    """Return two values in as many certain digits as tell them apart, zero where the second is left out.
+
+    Examples
+    --------
+    >>> decimals(acb(1) / 8)
+    ('0.125000000000000', '0', 15)
+    """
+    right = acb(0) if right is None else right
     one_is_zero = left.is_zero() or right.is_zero()
     lost = 0 if one_is_zero else _agreeing_digits(left, right, left - right)
     digits = min(

@@ -119,7 +119,7 @@ class Signs:
         if found is None:
             self._found[key] = ""
             found = self._search(p, depth)
-            if found.startswith("0") and self._known_nonzero(p):
+            if found.startswith("0") and (self._known_nonzero(p) or self._nonzero_by_relations(p, depth)):
                 found = found[1:]
             self._found[key] = found
             if not found and depth < DEEPEST:
@@ -138,6 +138,27 @@ class Signs:
         return bool(self._nonzero) and all(
             self.tower.key(f) in self._nonzero for f, _ in self.tower.factors(p)[1]
         )
+
+    def _nonzero_by_relations(self, p: fmpq_mpoly, depth: int) -> bool:
+        """Tell whether relations gⁿ = R show that no factor of p vanishes.
+
+        g and R vanish together: |t| ≠ 0 where t² ≠ 0. What divides R vanishes only where g does: 1 − cos t, which
+        divides sin² t = 1 − cos² t, is not zero where sin t > 0.
+        """
+        if depth == 0 or len(p) > LONGEST:
+            return False
+        return all(self._is_nonzero_factor(f, depth - 1) for f, _ in self.tower.factors(p)[1])
+
+    def _is_nonzero_factor(self, f: fmpq_mpoly, depth: int) -> bool:
+        t = self.tower
+        if len(f) == 1:
+            (k,) = t.used(f)
+            relation = t.relation(k)
+            below = "" if relation is None else self._sign(relation[1], depth)
+            return below in ("+", "-") or self._of.get(k, "") in ("+", "-") or self._known_nonzero(f)
+        roots = ((k, t.relation(k)) for k, sign in self._of.items() if sign in ("+", "-"))
+        powers = [relation[1] for _, relation in roots if relation is not None]
+        return self._known_nonzero(f) or any(t.quotient(power, f) is not None for power in powers)
 
     def _search(self, p: fmpq_mpoly, depth: int) -> str:
         by_terms = self._by_terms(p)

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 import sympy as sp
@@ -32,7 +32,7 @@ from canon.proof.continuity.turns_of_angles import continuity_but_for_turns
 from canon.proof.domain.balls import precision
 from canon.proof.domain.domain import EVERYWHERE, Domain
 from canon.proof.domain.verdict import Counterexample, Evidence, Status, Undecided, Verdict, all_hold
-from canon.proof.kinks import vanishes_off_kinks
+from canon.proof.kinks import off_kinks, vanishes_off_kinks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -58,7 +58,7 @@ def action_angle(reading: Reading) -> Iterator[Question]:
     of_state = [substitute(J, at_energy) for J in claimed]
     for domain, tori in by_senses(H, reading):
         if not tori.in_closed_form:
-            refuted = _refuted(of_state, [torus.J for torus in tori.tori], tori, "the action of")
+            refuted = _refuted(of_state, [torus.J for torus in tori.tori], tori, "the action of", domain)
             if refuted is not None:
                 yield Stated(refuted)
                 return
@@ -203,7 +203,8 @@ def frequency(reading: Reading) -> Iterator[Question]:
     for domain, tori in by_senses(H, reading):
         if not names and not tori.in_closed_form:
             numbers = [substitute(f, at_energy) for f in claimed]
-            refuted = _refuted(numbers, [torus.frequencies for torus in tori.tori], tori, "the frequency of")
+            frequencies = [torus.frequencies for torus in tori.tori]
+            refuted = _refuted(numbers, frequencies, tori, "the frequency of", domain)
             if refuted is not None:
                 yield Stated(refuted)
                 return
@@ -268,11 +269,16 @@ def _at_energy(reading: Reading, H: Hamiltonian) -> dict[Symbol, Expr]:
 
 
 def _refuted(
-    claimed: Sequence[Expr], balls: Sequence[Sequence[arb]], tori: Tori, name: str
+    claimed: Sequence[Expr], balls: Sequence[Sequence[arb]], tori: Tori, name: str, domain: Domain
 ) -> Verdict | None:
-    """Return FAILS where a claimed number is outside of the ball of certified quadrature on some torus."""
+    """Return FAILS where a claimed number is outside of the ball of certified quadrature on some torus, off kinks."""
+    off = off_kinks(claimed, domain).strictly
+    beside = [cast("sp.Ne", c) for c in off.conditions if c not in domain.conditions]
+    kinks = [cast("Expr", c.lhs) - cast("Expr", c.rhs) for c in beside]
     with precision(BITS):
         for torus, right in zip(tori.tori, balls, strict=True):
+            if any(tori.number(gap, torus).contains(0) for gap in kinks):
+                continue
             for i, (x, f, due) in enumerate(zip(torus.integral.H.q, claimed, right, strict=True)):
                 value = tori.number(f, torus)
                 if may_be(value, due) or (falls(torus, i) and may_be(value, -due)):
