@@ -19,6 +19,7 @@ from canon.proof.kinks import WITH_PIECES, is_thin, variants_of
 from canon.proof.rungs.cases import cases
 from canon.proof.rungs.ladder import REFUSALS, is_empty, prove_zero
 from canon.proof.trees.anatomy import anatomy
+from canon.proof.trees.polynomial import polynomial_factors
 from canon.proof.trees.sympy_types import arguments
 
 if TYPE_CHECKING:
@@ -61,25 +62,24 @@ def zero_piece(f: Expr, domain: Domain, budget: float = 1.0) -> str | None:
 
 
 def has_hidden_pieces(f: Expr, domain: Domain) -> bool:
-    """Tell whether roots, arcs or logarithms in f are taken of what may have a pole: they may step there as signs do.
+    """Tell whether a root may be taken of what has a double pole, or an arc of what has a pole: these step as signs do.
+
+    A root of what changes its sign at a pole is real on one side only.
 
     Examples
     --------
     >>> x = sp.Symbol("x", real=True)
-    >>> has_hidden_pieces(x * sp.sqrt(1 + 1 / x**2), Domain()), has_hidden_pieces(sp.sqrt(1 + x**2) / x, Domain())
-    (True, False)
+    >>> [has_hidden_pieces(g, Domain()) for g in (x * sp.sqrt(1 + 1 / x**2), sp.sqrt(1 + 1 / x), sp.sqrt(1 + x**2) / x)]
+    [True, False, False]
     """
-    branched = [
-        arguments(part)[0]
-        for part in anatomy([f]).of(sp.Pow, sp.log, sp.atan, sp.acot, sp.asinh)
-        if not (isinstance(part, sp.Pow) and part.exp.is_integer)
-    ]
-    poles = {e.base for e in anatomy(branched).of(sp.Pow) if not e.exp.is_nonnegative}
-    return any(
-        base.free_symbols
-        and not (base.is_positive or base.is_negative or proved_sign(base, domain) in ("+", "-"))
-        for base in poles
-    )
+    found = anatomy([f])
+    if not any(e.exp.is_negative and not e.base.is_number for e in found.of(sp.Pow)):
+        return False
+    roots = [p.base for p in found.of(sp.Pow) if p.exp.is_integer is not True]
+    arcs = [arguments(arc)[0] for arc in found.of(sp.atan, sp.acot)]
+    below = [(g, count) for base in roots for g, count in polynomial_factors(1 / base) if count % 2 == 0]
+    below += [pole for u in arcs for pole in polynomial_factors(1 / u)]
+    return not all(g.is_positive or g.is_negative or proved_sign(g, domain) in ("+", "-") for g, _ in below)
 
 
 def _factors(f: Expr) -> Iterator[Expr]:

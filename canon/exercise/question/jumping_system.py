@@ -22,7 +22,7 @@ from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.analytic import proved_sign
 from canon.proof.continuity.branching import open_surfaces
 from canon.proof.continuity.continuity import meets
-from canon.proof.continuity.jumps import continued, is_edge
+from canon.proof.continuity.jumps import continued, real_sides
 from canon.proof.continuity.one_sided import cuts_of, off_the_kinks
 from canon.proof.continuity.winding_centre import centre_of
 from canon.proof.domain.verdict import Undecided
@@ -165,7 +165,8 @@ def _jumps(system: Hamiltonian | Lagrangian, domain: Domain) -> list[Expr]:
     until = time.monotonic() + SIDE_SECONDS
     for surface in open_surfaces(f, state, domain):
         if surface.gap not in found:
-            found[surface.gap] = f.has(sp.I) or not is_edge(f, surface.gap, state, domain, until)
+            sides = None if f.has(sp.I) else real_sides(f, surface.gap, state, domain, until)
+            found[surface.gap] = sides in (None, 2)
     return [gap for gap, jumps in found.items() if jumps]
 
 

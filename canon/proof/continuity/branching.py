@@ -11,6 +11,7 @@ which is the sign of q. A function of what has a pole, as tanh(1/x), may have an
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, cast
 
@@ -19,7 +20,9 @@ from sympy.core.function import AppliedUndef
 
 from canon.proof.analytic import proved_sign
 from canon.proof.domain.declarations import declared_complex
+from canon.proof.domain.domain import Domain
 from canon.proof.domain.reality import certainly_real
+from canon.proof.rungs.ladder import is_empty
 from canon.proof.trees.affine_form import is_affine
 from canon.proof.trees.anatomy import anatomy
 from canon.proof.trees.polynomial import polynomial_factors
@@ -29,10 +32,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from sympy import Expr, Symbol
-
-    from canon.proof.domain.domain import Domain
+    from sympy.logic.boolalg import Boolean
 
 __all__ = ["Branch", "OpenSurface", "open_surfaces"]
+
+SECONDS = 0.5
+"""Time for the question whether a surface lies in the domain."""
 
 LARGE = 400
 """Size of a radicand that is still factored."""
@@ -114,7 +119,10 @@ def open_surfaces(f: Expr, moving: Sequence[Symbol], domain: Domain) -> list[Ope
 
 def _keeps_away(gap: Expr, domain: Domain) -> bool:
     """Tell whether a gap is proved not to change its sign: it vanishes nowhere on the domain, or is touched only."""
-    return proved_sign(gap, domain) != ""
+    if proved_sign(gap, domain) != "":
+        return True
+    on_surface = (*domain.conditions, cast("Boolean", sp.Eq(gap, 0, evaluate=False)))
+    return bool(domain.conditions) and is_empty(Domain(on_surface), time.monotonic() + SECONDS)
 
 
 def _is_of_one_kind(branches: Sequence[Branch], domain: Domain) -> bool:

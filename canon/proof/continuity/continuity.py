@@ -20,7 +20,7 @@ from canon.proof.continuity.beside_poles import meet_beside_poles
 from canon.proof.continuity.branching import open_surfaces
 from canon.proof.continuity.constant_steps import Fault, nonzero, step_between_pieces
 from canon.proof.continuity.hidden_jumps import hidden_jump
-from canon.proof.continuity.jumps import Jump, continued, find_jump, is_edge
+from canon.proof.continuity.jumps import Jump, continued, find_jump, real_sides
 from canon.proof.continuity.one_sided import (
     Cut,
     cuts_of,
@@ -51,6 +51,8 @@ __all__ = ["continuity", "meets"]
 CONTINUOUS = "is continuous"
 LARGE = 2000
 """Size of an expression that is still multiplied out."""
+LOOKED_AT = 3.0
+"""Seconds for one question about a surface where a function branches."""
 FEW = 4
 """Terms of which every sum is looked at."""
 
@@ -154,14 +156,18 @@ def _through_branches(
     assumed: list[str] = []
     left: list[Expr] = []
     for surface in surfaces:
-        jump = hidden_jump(f, surface, moving, domain, deadline)
-        if jump is not None and surface.gap not in excused:
-            return _failed(name, _fault_of(jump))
         if surface.gap in excused:
             assumed.append(f"{name} may jump where {surface.gap} = 0, as what is given does")
-        elif not f.has(sp.I) and is_edge(f, surface.gap, moving, domain, deadline):
+            continue
+        until = min(deadline, time.monotonic() + LOOKED_AT)
+        real = None if f.has(sp.I) else real_sides(f, surface.gap, moving, domain, until)
+        if real == 1:
             assumed.append(f"{name} is claimed where it is real")
-        else:
+        elif real != 0:
+            until = min(deadline, time.monotonic() + LOOKED_AT)
+            jump = hidden_jump(f, surface, moving, domain, until)
+            if jump is not None:
+                return _failed(name, _fault_of(jump))
             left.append(surface.gap)
     if left:
         where = " or ".join(f"{gap} = 0" for gap in left)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from canon.proof.domain.domain import Domain
 
-__all__ = ["Jump", "continued", "find_jump", "is_edge", "jump_between", "shown"]
+__all__ = ["Jump", "continued", "find_jump", "jump_between", "real_sides", "shown"]
 
 BITS = 192
 NARROW = 60
@@ -111,21 +111,30 @@ def jump_between(
     return None
 
 
-def is_edge(f: Expr, gap: Expr, variables: Sequence[Symbol], domain: Domain, deadline: float) -> bool:
-    """Tell whether a function is certainly not real on one side of a surface, at each place where it was looked at.
+def real_sides(
+    f: Expr, gap: Expr, variables: Sequence[Symbol], domain: Domain, deadline: float
+) -> int | None:
+    """Return on how many sides of a surface a function may be real, where it was looked at; None where it was nowhere.
 
-    It is analytic off the surfaces where it branches, so that it is not real in the parts that hold these points; what
-    is claimed is claimed where it is real, and has one side only there.
+    It is analytic off the surfaces where it branches, so that it is not real in the parts that hold points where it is
+    certainly not. What is claimed is claimed where it is real: on one side, or on none, there is nothing to jump.
+
+    Examples
+    --------
+    >>> from canon.proof.domain.domain import Domain
+    >>> x = sp.Symbol("x", real=True)
+    >>> [real_sides(f, x, [x], Domain(), time.monotonic() + 1) for f in (sp.sqrt(x), sp.sqrt(x - 1), abs(x))]
+    [1, 0, 2]
     """
-    seen = False
+    seen: int | None = None
     for point, s, ends in _crossings(free_symbols(f) | free_symbols(gap), gap, variables, domain, deadline):
         if time.monotonic() > deadline:
-            return False
+            return None
         sides = [{**point, s: end} for end in ends]
         if all(domain.admits(side) for side in sides):
-            if all(_may_be_real(f, side) for side in sides):
-                return False
-            seen = True
+            seen = max(seen or 0, sum(_may_be_real(f, side) for side in sides))
+            if seen == len(sides):
+                break
     return seen
 
 
