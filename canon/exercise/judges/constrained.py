@@ -96,7 +96,7 @@ def _on_every_motion(reading: Reading) -> Iterator[Question]:
     system, rates, claims, manifold = (
         [exchanged(e, jets) for e in given] for given in (system, rates, claims, manifold)
     )
-    open_ = {i: claim for i, claim in enumerate(claims) if not is_one_of(claim, system)} or {0: sp.S.Zero}
+    open_ = _not_among(claims, system)
     domain = with_jets(reading.domain, jets)
     check_whole([exchanged(g, jets) for g in bound.nonholonomic], lagrangian.velocities, domain)
     branches = on_manifold(manifold, domain, keep=(t, *unknowns), prefer=lagrangian.velocities)
@@ -120,6 +120,11 @@ def _on_every_motion(reading: Reading) -> Iterator[Question]:
     free = "it is true of anything" if not any(claims) else "it follows from the constraints alone"
     yield Tells(tuple(_on_any_motion(claims, rates, unknowns[: len(q)], branch) for branch in branches), free)
     yield Determines(partial(_left_open, claims, rates, system, unknowns, branches))
+
+
+def _not_among(claims: Sequence[Expr], system: Sequence[Expr]) -> dict[int, Expr]:
+    """Return the claims that are no equations of a system as they stand, by their numbers; 0 where there are none."""
+    return {i: claim for i, claim in enumerate(claims) if not is_one_of(claim, system)} or {0: sp.S.Zero}
 
 
 def _linear_consequences(

@@ -232,7 +232,7 @@ def _is_false(condition: Basic, values: Mapping[Symbol, Expr], seconds: float) -
         return True
     if not isinstance(there, sp.core.relational.Relational) or there.free_symbols:
         return there is sp.false
-    sign = sign_of(cast("Expr", there.lhs - there.rhs), seconds)
+    sign = sign_of(cast("Expr", there.lhs) - cast("Expr", there.rhs), seconds)
     return bool(there.func(sp.Integer(sign), 0) is sp.false)
 
 

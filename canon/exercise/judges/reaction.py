@@ -39,6 +39,8 @@ from canon.proof.trees.polynomial import polynomial_factors
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from sympy import Basic
+
     from canon.exercise.sheet.reading import Reading
     from canon.mechanics.algebra.constraint_manifold import Branch
     from canon.mechanics.lagrange.lagrangian import Lagrangian
@@ -236,9 +238,11 @@ def _valued_at_zeros(
         why = f"whether the equation has a value where the reaction vanishes was not decided: {reason}"
         yield Verdict(Status.UNDECIDED, evidence=(Evidence("open", why),))
         return
-    known = {s: f for s, f in {**motion.branch.values, **motion.solution}.items() if written.has(s)}
+    known: dict[Basic, Basic] = {
+        s: f for s, f in {**motion.branch.values, **motion.solution}.items() if written.has(s)
+    }
     for b in zeros:
-        there = put_in(put_in(exchanged(written, motion.jets), dict(known)), dict(b.values))
+        there = put_in(put_in(exchanged(written, motion.jets), known), dict(b.values.items()))
         lack = lack_of_value(there, b.domain, time.monotonic() + min(SIDE_SECONDS, deadline.left))
         if lack is not None:
             sentence = lack.sentence("the equation, where the reaction vanishes,")

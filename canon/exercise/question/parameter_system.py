@@ -181,25 +181,32 @@ def _brought_together(
     Undecided
         Where that was not told: there f(u) and f(v) might be one number, or two.
     """
-    pairs = list(places_apart(left))
-    same = {u: v for f, g in pairs for u, v in zip(f.args, g.args, strict=True) if sp.expand(u - v) == 0}
+    pairs = (pair for f, g in places_apart(left) for pair in zip(arguments(f), arguments(g), strict=True))
+    same = {u: v for u, v in pairs if sp.expand(u - v) == 0}
     left = [exchanged(r, same) for r in left] if same else list(left)
-    found: list[Family] = []
-    for f, g in places_apart(left):
-        gaps = tuple(u - v for u, v in zip(f.args, g.args, strict=True) if u != v)
-        if any(gap.has(*PIECED) for gap in gaps):
-            raise Undecided(f"whether {f} and {g} are taken at one place depends on the state")
-        if not any(gap.has(*free) for gap in gaps):
-            if not any(vanishes(gap, domain, budget=search.deadline.left).fails for gap in gaps):
-                raise Undecided(f"whether {f} and {g} are taken at one place was not decided")
-            continue
-        if rounds == 0:
-            raise Undecided("the conditions on the parameters were not solved in time")
-        at = _Search(gaps, tuple(free), search.given, domain, search.deadline)
-        found += _completed(at, {}, rounds - 1)
+    found = [
+        family for f, g in places_apart(left) for family in _at_one_place(search, f, g, free, domain, rounds)
+    ]
     if {} in found:
         raise Undecided("an arbitrary function is taken at one place that is written in two ways")
     return left, found
+
+
+def _at_one_place(
+    search: _Search, f: AppliedUndef, g: AppliedUndef, free: Sequence[Symbol], domain: Domain, rounds: int
+) -> list[Family]:
+    """Return the parameters for which two values of a function are taken at one place, whatever the state."""
+    gaps = tuple(u - v for u, v in zip(arguments(f), arguments(g), strict=True) if u != v)
+    if any(gap.has(*PIECED) for gap in gaps):
+        raise Undecided(f"whether {f} and {g} are taken at one place depends on the state")
+    if not any(gap.has(*free) for gap in gaps):
+        if any(vanishes(gap, domain, budget=search.deadline.left).fails for gap in gaps):
+            return []
+        raise Undecided(f"whether {f} and {g} are taken at one place was not decided")
+    if rounds == 0:
+        raise Undecided("the conditions on the parameters were not solved in time")
+    at = _Search(gaps, tuple(free), search.given, domain, search.deadline)
+    return list(_completed(at, {}, rounds - 1))
 
 
 def _solved_first(conditions: Sequence[Expr], free: Sequence[Symbol], domain: Domain) -> list[Family] | None:

@@ -12,8 +12,7 @@ import numpy as np
 from canon.flow.adaptive.longest_step import longest_step
 from canon.flow.adaptive.watched_orbit import WatchedOrbit
 from canon.flow.kinked.regimes import kinks_of
-from canon.flow.run.event import waiting_events
-from canon.flow.run.samples import Samples
+from canon.flow.run.samples import Samples, waiting_events
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -18,8 +18,7 @@ from canon.flow.fixed_step.compiled_loop import steps_between
 from canon.flow.fixed_step.partial_step import LoopState
 from canon.flow.fixed_step.statistics import check_cadence, statistics
 from canon.flow.fixed_step.steps_with_events import run_with_events
-from canon.flow.run.event import waiting_events
-from canon.flow.run.samples import Samples
+from canon.flow.run.samples import Samples, waiting_events
 from canon.flow.run.sampling_plan import Plan, Sampling, fixed_plan, steps_over
 
 if TYPE_CHECKING:

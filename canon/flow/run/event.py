@@ -16,10 +16,9 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
 
     from canon.array import Array
-    from canon.flow.run.samples import Samples
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["Crossing", "Event", "PreparedEvent", "prepared_events", "waiting_events"]
+__all__ = ["Crossing", "Event", "PreparedEvent", "prepared_events"]
 
 Action = Literal["record", "stop", "bounce"]
 
@@ -220,18 +219,3 @@ def _reflected(
         graph.add([graph.symbol(s), graph.mul([impulse, n])]) for s, n in zip(system.p, normal, strict=True)
     ]
     return (*(graph.symbol(s) for s in system.q), *momenta)
-
-
-def waiting_events(events: Sequence[PreparedEvent], so_far: Samples | None) -> list[Event]:
-    """Return the events that a resumed motion has not met yet where it stands; none of one that begins.
-
-    One whose function is zero just there has not left it, so that it was not counted before.
-    """
-    if so_far is None or len(so_far.t) == 1:
-        return []
-    last = so_far.t[-1]
-    return [
-        each.event
-        for each in events
-        if not any(m.event is each.event and m.t == last for m in so_far.crossings)
-    ]

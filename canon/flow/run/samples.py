@@ -11,9 +11,9 @@ import numpy as np
 from canon.array import Array
 
 if TYPE_CHECKING:
-    from canon.flow.run.event import Crossing
+    from canon.flow.run.event import Crossing, Event, PreparedEvent
 
-__all__ = ["Dense", "Samples", "Statistics", "joined", "side_by_side"]
+__all__ = ["Dense", "Samples", "Statistics", "joined", "side_by_side", "waiting_events"]
 
 Dense = Callable[[Array], Array]
 """States (2n, times) at times."""
@@ -128,6 +128,21 @@ def joined(before: Samples | None, after: Samples) -> Samples:
             for earlier, later in zip(before.dense, after.dense, strict=True)
         ),
     )
+
+
+def waiting_events(events: Sequence[PreparedEvent], so_far: Samples | None) -> list[Event]:
+    """Return the events that a resumed motion has not met yet where it stands; none of one that begins.
+
+    One whose function is zero just there has not left it, so that it was not counted before.
+    """
+    if so_far is None or len(so_far.t) == 1:
+        return []
+    last = so_far.t[-1]
+    return [
+        each.event
+        for each in events
+        if not any(m.event is each.event and m.t == last for m in so_far.crossings)
+    ]
 
 
 @dataclass(frozen=True)

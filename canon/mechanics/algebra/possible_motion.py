@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
+from itertools import product
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
@@ -207,19 +208,27 @@ def _looked_at(functions: Sequence[Expr], domain: Domain) -> tuple[bool, tuple[E
 def _is_real_further_on(functions: Sequence[Expr], bounds: Sequence[Boolean], domain: Domain) -> bool:
     """Whether functions may be real at a point where one symbol after another was moved to where bounds hold."""
     symbols = {s for f in functions for s in free_symbols(f)}
-    for point in domain.points(symbols, MOVED):
-        for s in sorted(symbols, key=str):
-            moved = dict(point)
-            for bound in bounds:
-                gap = substitute(
-                    cast("Expr", bound.gts - bound.lts), {z: n for z, n in moved.items() if z != s}
-                )
-                slope = gap.diff(s)
-                if slope.is_Rational and slope != 0 and not conditions_hold([bound], moved):
-                    moved[s] = cast("Rational", substitute((1 - gap) / slope, {s: sp.S.Zero}))
-            if domain.admits(moved) and all(_is_real_at(f, moved) for f in functions):
-                return True
+    for point, s in product(domain.points(symbols, MOVED), sorted(symbols, key=str)):
+        moved = _moved_along(s, point, bounds)
+        if domain.admits(moved) and all(_is_real_at(f, moved) for f in functions):
+            return True
     return False
+
+
+def _moved_along(
+    s: Symbol, point: Mapping[Symbol, Rational], bounds: Sequence[Boolean]
+) -> dict[Symbol, Rational]:
+    """Return a point with one symbol moved to where bounds that are linear in it hold, one after another."""
+    moved = dict(point)
+    for bound in bounds:
+        sides = cast("sp.Gt", bound)
+        gap = substitute(
+            cast("Expr", sides.gts) - cast("Expr", sides.lts), {z: n for z, n in moved.items() if z != s}
+        )
+        slope = gap.diff(s)
+        if slope.is_Rational and slope != 0 and not conditions_hold([bound], moved):
+            moved[s] = cast("Rational", substitute((1 - gap) / slope, {s: sp.S.Zero}))
+    return moved
 
 
 def _without_turns(

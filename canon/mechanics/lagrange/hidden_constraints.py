@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from sympy import Expr, Symbol
 
     from canon.mechanics.algebra.constraint_manifold import Branch
+    from canon.mechanics.algebra.linear import Elimination
     from canon.proof.domain.domain import Domain
 
 __all__ = ["Motions", "all_motions"]
@@ -96,26 +97,38 @@ def all_motions(
     """
     v, known = [velocity(x) for x in q], list(held)
     for _ in range(MOST_ROUNDS):
-        check_whole(known, v, domain)
-        branches = inhabited(on_manifold(known, domain, keep=(t, *unknowns), prefer=v))
-        if len(branches) != 1:
-            raise Undecided("the equations bind the state to several branches; split the claim by the domain")
-        (branch,) = branches
+        branch = _where(known, v, domain, (t, *unknowns))
         rates = [time_derivative(g, q, t) for g in known if g.has(*v)]
-        here = [substitute(e, branch.values) for e in (*system, *rates)]
-        slopes = sp.Matrix([[e.diff(u) for u in unknowns] for e in here])
-        rest = sp.Matrix([exchanged(e, dict.fromkeys(unknowns, sp.S.Zero)) for e in here])
-        _check_affine(here, slopes, rest, unknowns, branch.domain)
-        echelon = eliminate(slopes, rest, branch.domain)
-        new = [f for row in echelon.rows[echelon.rank :] if _is_new(f := row[-1], branch.domain)]
+        echelon = _in_echelon([*system, *rates], unknowns, branch)
+        new = [sp.numer(sp.together(f)) for f in _left_over(echelon) if _is_new(f, branch.domain)]
         if not new:
             return Motions(branch, _solved(echelon.rows[: echelon.rank], echelon.pivots, unknowns))
-        for f in new:
-            bound = sp.numer(sp.together(f))
-            if not bound.has(*q, *v):
-                raise Undecided(f"the equations ask for {bound} = 0, so that there is no motion")
-            known += [bound] if bound.has(*v) else [bound, time_derivative(bound, q, t)]
+        if none := [f for f in new if not f.has(*q, *v)]:
+            raise Undecided(f"the equations ask for {none[0]} = 0, so that there is no motion")
+        known += [*new, *(time_derivative(f, q, t) for f in new if not f.has(*v))]
     raise Undecided("the equations bind the state further with every rate that is taken")
+
+
+def _in_echelon(equations: Sequence[Expr], unknowns: Sequence[Symbol], branch: Branch) -> Elimination:
+    here = [substitute(e, branch.values) for e in equations]
+    slopes = [[e.diff(u) for u in unknowns] for e in here]
+    rests = [exchanged(e, dict.fromkeys(unknowns, sp.S.Zero)) for e in here]
+    _check_affine(here, slopes, rests, unknowns, branch.domain)
+    return eliminate(sp.Matrix(slopes), sp.Matrix(rests), branch.domain)
+
+
+def _left_over(echelon: Elimination) -> list[Expr]:
+    """Return what vanishes of combinations in which no unknown is left."""
+    return [row[-1] for row in echelon.rows[echelon.rank :]]
+
+
+def _where(known: Sequence[Expr], v: Sequence[Symbol], domain: Domain, keep: Sequence[Symbol]) -> Branch:
+    """Return the one branch of the states at which conditions hold."""
+    check_whole(known, v, domain)
+    branches = inhabited(on_manifold(known, domain, keep=keep, prefer=v))
+    if len(branches) != 1:
+        raise Undecided("the equations bind the state to several branches; split the claim by the domain")
+    return branches[0]
 
 
 def _is_new(f: Expr, domain: Domain) -> bool:
@@ -126,13 +139,16 @@ def _is_new(f: Expr, domain: Domain) -> bool:
 
 
 def _check_affine(
-    equations: Sequence[Expr], slopes: sp.Matrix, rest: sp.Matrix, unknowns: Sequence[Symbol], domain: Domain
+    equations: Sequence[Expr],
+    slopes: Sequence[Sequence[Expr]],
+    rests: Sequence[Expr],
+    unknowns: Sequence[Symbol],
+    domain: Domain,
 ) -> None:
     """Refuse equations that are not slopes · u + rest with slopes free of the unknowns."""
     until = clock.monotonic() + SECONDS
-    for i, equation in enumerate(equations):
-        row = [slopes[i, j] for j in range(len(unknowns))]
-        affine = sp.Add(*(a * u for a, u in zip(row, unknowns, strict=True)), rest[i, 0])
+    for equation, row, rest in zip(equations, slopes, rests, strict=True):
+        affine = sp.Add(*(a * u for a, u in zip(row, unknowns, strict=True)), rest)
         left = max(0.1, until - clock.monotonic())
         if (
             any(a.has(*unknowns) for a in row)

@@ -82,7 +82,7 @@ def is_nowhere_real(f: Expr, domain: Domain) -> bool:
     if not all(gap.is_extended_real and _is_negative(gap, domain) for gap in open_.values()):
         return False
     written = cast("Expr", f.xreplace({part: _with_i(part) for part in open_}))
-    above = cast("Expr", written.as_real_imag()[1])
+    above = written.as_real_imag()[1]
     if above.has(sp.im, sp.re, sp.arg, sp.conjugate) or above.has(sp.I):
         return False
     return proved_sign(above, domain) in ("+", "-") or (above != 0 and is_analytic([above], domain))

@@ -30,7 +30,7 @@ def with_pinched_bounds(domain: Domain) -> Domain:
     (a >= b, a <= b, Eq(a - b, 0))
     """
     bounds = [c for c in parts_of(domain.conditions) if isinstance(c, sp.Ge | sp.Le)]
-    gaps = [cast("Expr", c.gts - c.lts) for c in bounds]
+    gaps = [cast("Expr", c.gts) - cast("Expr", c.lts) for c in bounds]
     ends = [f for f, g in combinations(gaps, 2) if f.free_symbols and sp.expand(f + g) == 0]
     equal = [cast("Boolean", sp.Eq(f, 0)) for f in ends]
     return Domain((*domain.conditions, *equal), domain.box) if equal else domain

@@ -26,10 +26,13 @@ def at_plain_places(expr: Expr) -> Expr:
     >>> at_plain_places(V(x + a).diff(x).subs(a, 0) - V(x).diff(x))
     0
     """
-    plain = {
-        s: s.doit() for s in expr.atoms(sp.Subs) if all(isinstance(place, sp.Symbol) for place in s.point)
-    }
+    derived = expr.atoms(sp.Subs)
+    plain = {s: s.doit() for s in derived if all(isinstance(place, sp.Symbol) for place in _point(s))}
     return cast("Expr", expr.xreplace(plain)) if plain else expr
+
+
+def _point(derived: sp.Subs) -> tuple[Expr, ...]:
+    return cast("tuple[Expr, ...]", tuple(cast("sp.Tuple", derived.point)))
 
 
 def outermost(expr: Expr) -> list[Expr]:
@@ -66,9 +69,7 @@ def places_apart(exprs: Iterable[Expr]) -> Iterator[tuple[AppliedUndef, AppliedU
 def _values(expr: sp.Basic) -> Iterator[AppliedUndef]:
     """Yield the values of functions at the places where they are taken; f′ at u says f(u)."""
     if isinstance(expr, sp.Subs):
-        at = dict(
-            zip(cast("tuple[Expr, ...]", expr.variables), cast("tuple[Expr, ...]", expr.point), strict=True)
-        )
+        at = dict(zip(cast("tuple[Expr, ...]", expr.variables), _point(expr), strict=True))
         for value in _values(expr.expr):
             yield cast("AppliedUndef", value.subs(list(at.items()), simultaneous=True))
         for place in at.values():

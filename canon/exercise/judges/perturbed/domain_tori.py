@@ -195,7 +195,7 @@ def is_positive_there(f: Expr, domain: Domain) -> bool:
         return True
     for c in parts_of(domain.conditions):
         if isinstance(c, sp.Gt | sp.Lt | sp.Ge | sp.Le):
-            gap = cast("Expr", c.gts - c.lts)
+            gap = cast("Expr", c.gts) - cast("Expr", c.lts)
             for s in symbols_of(gap):
                 k = sp.cancel(f.diff(s) / gap.diff(s)) if gap.has(s) and gap.diff(s) != 0 else sp.S.Zero
                 if k.is_positive and proved_sign(sp.expand(f - k * gap), domain).endswith(("+", "0")):
@@ -294,10 +294,19 @@ def _kept_tori(
     both = _both_senses((*found, *compared), {symbol: f for f, symbol in frozen.items()})
     if both is not None:
         return both
+    return _with_formulas(integral, found, compared, {symbol: f for f, symbol in frozen.items()})
+
+
+def _with_formulas(
+    integral: CompleteIntegral,
+    found: Sequence[ActionVariables],
+    compared: Sequence[ActionVariables],
+    back: Mapping[Expr, Expr],
+) -> Tori:
+    """Return tori with the formulas that their actions are known by, and where these are valid."""
     known = tuple(None if action is None else action.J for action in closed_actions(found[0], LONGEST))
     if not all(_lie_in(known, torus) for torus in (*found, *compared)):
         raise Undecided("the actions are other functions in parts of the domain; narrow it")
-    back = {symbol: f for f, symbol in frozen.items()}
     valid = validity(found[0])
     sides = (tuple(exchanged(f, back) for f in side) for side in (valid.bounded, valid.kind))
     whole = tuple(J if J is None else exchanged(J, back) for J in known)

@@ -7,6 +7,7 @@ quartic with the roots ±1 and those of A + B x + C x² (P. F. Byrd, M. D. Fried
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
     from canon.mechanics.integrable.cycles import Cycle
 
-__all__ = ["action_in_elliptic_coordinates"]
+__all__ = ["action_in_elliptic_coordinates", "sides_of_roots"]
 
 NEAR = 1e-9
 """How near to 1 or −1 the end of a range of x is taken for the root there."""
@@ -43,9 +44,7 @@ def action_in_elliptic_coordinates(
         return None
     B, C = terms.get(x, sp.S.Zero), terms[x**2]
     ends = _range(x, q, cycle)
-    R = sqrt(B**2 - 4 * A * C)
-    roots = [sp.S.One, sp.S.NegativeOne, (-B + R) / (2 * C), (-B - R) / (2 * C)]
-    placed = _in_order(roots, values)
+    placed = _in_order(_roots(A, B, C), values)
     if ends is None or placed is None:
         return None
     low, high, times = ends
@@ -56,6 +55,21 @@ def action_in_elliptic_coordinates(
     moments = _moments([root for _, root in placed], above)
     total = sp.Add(*(c * moment for c, moment in zip((A, B, C), moments, strict=True)))
     return cycle.sign * times * total / (sp.pi * sqrt(sp.Abs(C)))
+
+
+def sides_of_roots(
+    A: Expr, terms: Mapping[Expr, Expr], q: Symbol, values: Mapping[Symbol, Expr]
+) -> tuple[Expr, ...]:
+    """Return what is positive as long as the four roots are real and keep the order that they have at given values."""
+    x = next(x for x in (sp.cos(q), sp.cosh(q)) if x**2 in terms)
+    B, C = terms.get(x, sp.S.Zero), terms[x**2]
+    placed = [root for _, root in _in_order(_roots(A, B, C), values) or ()]
+    return (B**2 - 4 * A * C, *(a - b for a, b in pairwise(placed)))
+
+
+def _roots(A: Expr, B: Expr, C: Expr) -> list[Expr]:
+    R = sqrt(B**2 - 4 * A * C)
+    return [sp.S.One, sp.S.NegativeOne, (-B + R) / (2 * C), (-B - R) / (2 * C)]
 
 
 def _range(x: Expr, q: Symbol, cycle: Cycle) -> tuple[float, float, int] | None:

@@ -18,6 +18,7 @@ from canon.mechanics.integrable.closed_form.actions_in_closed_form import (
     recognised,
     terms_in,
 )
+from canon.mechanics.integrable.closed_form.elliptic_coordinates import sides_of_roots
 from canon.mechanics.integrable.cycles import CycleKind
 
 if TYPE_CHECKING:
@@ -69,6 +70,8 @@ def validity(torus: ActionVariables) -> Validity:
         A = terms.pop(sp.S.One, sp.S.Zero)
         bounded += _bounded(found[1], A, terms, momentum.q)
         kind += _of_the_kind(found[1], A, terms, momentum.q)
+        if found[1] == "elliptic coordinates":
+            kind += sides_of_roots(A, terms, momentum.q, torus.values)
     return Validity(*(tuple(dict.fromkeys(f for f in fs if not f.is_positive)) for fs in (bounded, kind)))
 
 
