@@ -191,17 +191,25 @@ def is_positive_there(f: Expr, domain: Domain) -> bool:
     >>> [is_positive_there(2 - 2 * H, Domain((H < bound,))) for bound in (sp.Rational(1, 2), 1, 2)]
     [True, True, False]
     """
+    bounds = [c for c in parts_of(domain.conditions) if isinstance(c, sp.Gt | sp.Lt | sp.Ge | sp.Le)]
+    gaps = (cast("Expr", c.gts) - cast("Expr", c.lts) for c in bounds)
+    if any(_follows_from(gap, f, domain) for gap in gaps):
+        return True
     if proved_sign(f, domain).endswith("+"):
         return True
-    for c in parts_of(domain.conditions):
-        if isinstance(c, sp.Gt | sp.Lt | sp.Ge | sp.Le):
-            gap = cast("Expr", c.gts) - cast("Expr", c.lts)
-            for s in symbols_of(gap):
-                k = sp.cancel(f.diff(s) / gap.diff(s)) if gap.has(s) and gap.diff(s) != 0 else sp.S.Zero
-                if k.is_positive and proved_sign(sp.expand(f - k * gap), domain).endswith(("+", "0")):
-                    return True
     elsewhere = Domain((*domain.conditions, cast("Boolean", sp.Lt(f, 0))), domain.box)
     return is_empty(elsewhere, time.monotonic() + PROOF_SECONDS)
+
+
+def _follows_from(gap: Expr, f: Expr, domain: Domain) -> bool:
+    """Whether f = k g + r, with k > 0 and r ≥ 0, for what is positive on the domain."""
+    for s in symbols_of(gap):
+        slope = gap.diff(s)
+        k = sp.cancel(f.diff(s) / slope) if slope != 0 else sp.S.Zero
+        rest = sp.expand(f - k * gap) if k.is_positive else sp.S.NegativeOne
+        if rest.is_nonnegative or (k.is_positive and proved_sign(rest, domain).endswith("+")):
+            return True
+    return False
 
 
 def by_senses(H: Hamiltonian, reading: Reading) -> list[tuple[Domain, Tori]]:
