@@ -71,7 +71,8 @@ def without_value(reading: Reading, deadline: Deadline) -> Iterator[Verdict]:
         )
         lack = lack_beside(_seen(answer, following), [*given, *other], reading.domain, until)
         if lack is not None:
-            yield _open(lack, key) if _is_one_of_several(reading) else _fails(lack, key)
+            open_ = not lack.proved or _is_one_of_several(reading)
+            yield _open(lack, key) if open_ else _fails(lack, key)
     yield from _without_value_on_motions(reading, answers, until)
 
 

@@ -86,6 +86,7 @@ class Lack:
 
 
 NOT_FOUND = Lack("no point was found where it certainly has one", proved=False)
+NOT_LOOKED_AT = Lack("there was no time to look everywhere", proved=False)
 
 
 def lack_of_value(expr: Expr, domain: Domain, deadline: float, *, valued: bool = False) -> Lack | None:
@@ -227,7 +228,9 @@ def may_lack(found: Anatomy) -> bool:
 
 
 def lack_beside(expr: Expr, others: Sequence[Expr], domain: Domain, deadline: float) -> Lack | None:
-    """Return a point around which an expression has no value, though all the others have one.
+    """Return a point around which an expression has no value, though all the others have one; None if none was found.
+
+    Where the time ends before all points were looked at, that is what comes back, and nothing is proved.
 
     Parameters
     ----------
@@ -251,7 +254,7 @@ def lack_beside(expr: Expr, others: Sequence[Expr], domain: Domain, deadline: fl
         why = _what_takes_the_value(shown[0], point, deadline)
         if why and all(_valued(other, point, deadline) for other in shown[1:]):
             return Lack(f"{why} there", point=point)
-    return None
+    return NOT_LOOKED_AT if time.monotonic() > deadline else None
 
 
 def _points(found: Anatomy, domain: Domain, deadline: float) -> Iterator[Mapping[Symbol, sp.Rational]]:
