@@ -146,8 +146,10 @@ def error_series(
     u = unit_round_off(motion.precision)
     terms = _sizes_of_terms(motion, orbit or 0) / unit if name == ENERGY else np.zeros(1)
     least = 1.0 if relative else 0.0
-    walk = u * math.sqrt(motion.steps) * max(least, float(np.sqrt(np.mean(terms**2))))
-    bias = u * motion.steps * max(least, float(np.mean(terms)))
+    steps = motion.steps  # of many orbits that choose their own: of all of them together
+    steps = steps / motion.y.shape[2] if many and not motion.method.engine.takes_step else steps
+    walk = u * math.sqrt(steps) * max(least, float(np.sqrt(np.mean(terms**2))))
+    bias = u * steps * max(least, float(np.mean(terms)))
     tolerance = motion.method.tolerance
     truncated = tolerance is not None and tolerance > FAR_ABOVE * u
     size = 1.0 if relative else float(np.mean(terms)) or 1.0

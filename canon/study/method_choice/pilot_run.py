@@ -172,16 +172,18 @@ def _sampled(question: Question, setting: Setting, span: float, windows: int) ->
     found = question.run(setting, span, samples)
     error = change_of(found, question)[1:] / unit_of(found, question)
     parts = min(windows, error.size) if stepped else error.size
-    rows = error[: error.size // parts * parts].reshape(parts, -1)
-    times = (found.t[1:] - question.since)[: rows.size].reshape(parts, -1)
+    ends = (
+        np.linspace(0, error.size, parts + 1).round().astype(int)
+    )  # to the last sample, where errors are largest
+    first, count = ends[:-1], np.diff(ends)
     return Pilot(
         setting=setting if setting.step is None else replace(setting, step=found.step),
         span=span,
         steps=found.steps,
         evaluations=found.evaluations,
-        t=times.mean(axis=1),
-        mean=rows.mean(axis=1),
-        largest=np.abs(rows).max(axis=1),
+        t=np.add.reduceat(found.t[1:] - question.since, first) / count,
+        mean=np.add.reduceat(error, first) / count,
+        largest=np.maximum.reduceat(np.abs(error), first),
         energy=_energy(found),
     )
 
