@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from sympy import sqrt, symbols
+from sympy import Symbol, sqrt, symbols
 
 from canon import Hamiltonian, Splitting, VectorField, coordinates
 from canon.flow import (
@@ -31,6 +31,17 @@ def test_nothing_is_said_of_an_orbit_whose_energy_is_far_off():
         megno(kepler, (0, 600), start, method=Splitting("kahan-li-8"), step=0.002).verdict
         is Regularity.REGULAR
     )
+
+
+def test_nor_of_orbits_with_parameters_of_their_own():
+    x, y = coordinates("x y")
+    mu = Symbol("mu", positive=True)
+    kepler = Hamiltonian(
+        (x.momentum**2 + y.momentum**2) / 2 - mu / sqrt(x**2 + y**2), [x, y], [x.momentum, y.momentum]
+    )
+    start, how = [0.1, 0, 0, 19**0.5], {"method": Splitting("kahan-li-8"), "step": 0.05}
+    wrong = megno(kepler, (0, 600), start, parameters={mu: [1.0, 1.0]}, **how)
+    assert [*wrong.verdict] == [Regularity.NOT_KNOWN] * 2
 
 
 def test_exponents_fall():

@@ -254,10 +254,13 @@ def deviation_growth(
 
 def _energy_error(task: Task, last: Array) -> Array:
     system, first = task.system, task.states[0]
-    of_one_kind = system.autonomous and not (system.kicked or system.spare or system.varying)
+    unseen = system.varying and not system.canonical
+    of_one_kind = system.autonomous and not (system.kicked or system.spare or unseen)
     if not of_one_kind or system.graph.is_constant(system.hamiltonian):
         return np.zeros(first.shape[1])
     begin, end = (float(task.plan.instants[k]) for k in (0, -1))
+    moved, last = last, first.copy()  # parameters by orbit stay what they are
+    last[system.rows] = moved[: len(system.rows)] if len(moved) < len(last) else moved[system.rows]
     with np.errstate(all="ignore"):
         before, after = (
             np.asarray(energy_and_rates(system, states, t, FLOAT64)[0])
