@@ -50,10 +50,12 @@ def _is_watched(task: Task) -> bool:
     if task.method.engine not in (HEYOKA, SCIPY):
         return False
     from canon.flow.kinked.branch_points import may_meet_branch_points
+    from canon.flow.kinked.cuts_of_angles import may_cross_cuts
     from canon.flow.kinked.lost_direction import may_lose_direction
 
     branches = task.method.engine is HEYOKA and kinks_of(task.system) is None
-    return may_lose_direction(task.system) or (branches and may_meet_branch_points(task.system))
+    by_series = task.method.engine is HEYOKA and may_cross_cuts(task.system)
+    return by_series or may_lose_direction(task.system) or (branches and may_meet_branch_points(task.system))
 
 
 def _one_by_one(task: Task, progress: Callable[[float], None], so_far: Samples | None) -> Samples:
@@ -133,6 +135,7 @@ def _by_heyoka(
     from canon.flow.adaptive.state_unit import parameter_units
     from canon.flow.adaptive.taylor_motion import taylor_motion
     from canon.flow.kinked.branch_points import branch_points, check_branch_points
+    from canon.flow.kinked.cuts_of_angles import check_cuts, cuts_of_angles
     from canon.flow.kinked.lost_direction import check_directions, lost_directions
 
     system, states, events = task.system, _states(task, so_far), prepared_events(task.system, task.events)
@@ -140,7 +143,8 @@ def _by_heyoka(
     start, begin = states[0][:, 0], _begin(task, so_far)
     branches = branch_points(system, start, begin) if kinks_of(system) is None else ()
     lost = lost_directions(system, start, begin)
-    looked = *events, *branches, *lost
+    cuts = cuts_of_angles(system) if states[0].shape[1] == 1 else ()
+    looked = *events, *branches, *lost, *cuts
     units = parameter_units(system, task.states[0], looked)
     high, low = map(units.of, states)
     made = taylor_motion(
@@ -148,6 +152,7 @@ def _by_heyoka(
         max_step=task.max_step,
     )  # fmt: skip
     made = replace(made, y=units.back(made.y), carried=units.back(made.carried))
+    made = check_cuts(system, cuts, made, start) if cuts else made
     made = check_directions(lost, made)
     return joined(so_far, check_branch_points(branches, made))
 

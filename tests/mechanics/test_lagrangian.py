@@ -236,3 +236,9 @@ def test_a_quadratic_rayleigh_function_takes_twice_itself_from_the_energy() -> N
     system = Lagrangian(m * (x.dot**2 + y.dot**2) / 2 - k * (x**2 + y**2) / 2, [x, y], dissipation=F)
     power = sum(Q * v for Q, v in zip(system.forces, system.velocities, strict=True))
     assert sp.expand(power + 2 * F) == 0
+
+
+def test_coordinates_of_which_one_has_the_name_of_a_velocity():
+    a, b = coordinates("x x_dot")
+    with pytest.raises(ValueError, match="name of the velocity or acceleration of x,"):
+        Lagrangian((a.dot**2 + b.dot**2) / 2, [a, b])
