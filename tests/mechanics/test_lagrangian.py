@@ -239,6 +239,6 @@ def test_a_quadratic_rayleigh_function_takes_twice_itself_from_the_energy() -> N
 
 
 def test_coordinates_of_which_one_has_the_name_of_a_velocity():
-    a, b = coordinates("x x_dot")
+    u, v = coordinates("x x_dot")
     with pytest.raises(ValueError, match="name of the velocity or acceleration of x,"):
-        Lagrangian((a.dot**2 + b.dot**2) / 2, [a, b])
+        Lagrangian((u.dot**2 + v.dot**2) / 2, [u, v])

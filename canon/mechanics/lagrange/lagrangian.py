@@ -100,10 +100,11 @@ class Lagrangian:
             raise ValueError("no coordinates given; a system moves in at least one")
         if len({*symbols}) < len(symbols):
             raise ValueError(f"the coordinates {symbols} are not all different; every one moves on its own")
-        if both := [str(s) for s in symbols if velocity(s) in symbols or acceleration(s) in symbols]:
+        names = {s.name for s in symbols}
+        if both := [s.name for s in symbols if names & {velocity(s).name, acceleration(s).name}]:
             raise ValueError(
                 f"of the coordinates {symbols} one has the name of the velocity or acceleration of {', '.join(both)}, "
-                "and they would be one symbol; call it otherwise"
+                "and nothing would tell them apart; call it otherwise"
             )
         check_none_reads_as_the_time(symbols, "Lagrangian(L, q", t)
         given = _forces(forces, symbols)
