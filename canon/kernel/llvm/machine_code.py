@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     import llvmlite.binding as binding
 
-__all__ = ["MachineCode", "compiled", "simd_bytes"]
+__all__ = ["APART", "MachineCode", "compiled", "simd_bytes"]
 
 _COMPILING = threading.Lock()
 if hasattr(
@@ -39,6 +39,9 @@ _OPTIONS = "1: level 3, loops vectorized and unrolled, single numbers too in sma
 
 _LARGE = 200_000
 """Above this size of a module the search for parallel scalars (SLP) takes longer than it saves."""
+
+APART = "; single numbers stay single"
+"""The first line of a module in which parallel scalars are not looked for."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +114,7 @@ def optimized(ir: str, machine: binding.TargetMachine) -> binding.ModuleRef:
     module.verify()
     tuning = llvm.create_pipeline_tuning_options(speed_level=3)
     tuning.loop_vectorization = tuning.loop_unrolling = True
-    tuning.slp_vectorization = len(ir) < _LARGE
+    tuning.slp_vectorization = len(ir) < _LARGE and not ir.startswith(APART)
     builder = llvm.create_pass_builder(machine, tuning)
     builder.getModulePassManager().run(module, builder)
     return module
