@@ -319,7 +319,7 @@ def decide(question: Question, deadline: Deadline) -> Verdict:
             verdict = off.ask(lambda there: is_regular(seen, there, name), by_point=Status.HOLDS)
             if verdict.holds and exceptions:
                 return replace(verdict, assumed=(*verdict.assumed, *_singular_places(matrix, name, domain)))
-            everywhere = verdict.fails and any(e.kind == "null direction" for e in verdict.evidence)
+            everywhere = verdict.fails and "null direction" in {e.kind for e in verdict.evidence}
             return replace(verdict, feedback=singular_is or verdict.feedback) if everywhere else verdict
 
 
