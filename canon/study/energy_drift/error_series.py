@@ -131,12 +131,7 @@ def error_series(
             f"the motion has {motion.y.shape[2]} orbits: say which one to judge, orbit=0 … {motion.y.shape[2] - 1}"
         )
     chosen = slice(None) if orbit is None or not many else orbit
-    unit = abs(float(np.atleast_1d(at_start)[orbit or 0]))
-    relative = motion.relative if name == ENERGY else unit != 0.0
-    if isinstance(observable, Observable) and name != ENERGY:
-        unit, relative = observable.unit, observable.relative
-    elif not relative:
-        unit = 1.0
+    unit, relative = _unit(motion, observable, abs(float(np.atleast_1d(at_start)[orbit or 0])))
     t, error = abs(motion.t - motion.t[0]), change[:, chosen] / unit if many else change / unit
     largest = float(np.abs(error).max())
     if name in motion.statistics:
@@ -146,13 +141,12 @@ def error_series(
     u = unit_round_off(motion.precision)
     terms = _sizes_of_terms(motion, orbit or 0) / unit if name == ENERGY else np.zeros(1)
     least = 1.0 if relative else 0.0
-    steps = motion.steps  # of many orbits that choose their own: of all of them together
-    steps = steps / motion.y.shape[2] if many and not motion.method.engine.takes_step else steps
+    steps = _steps_of_one(motion)
     walk = u * math.sqrt(steps) * max(least, float(np.sqrt(np.mean(terms**2))))
     bias = u * steps * max(least, float(np.mean(terms)))
     tolerance = motion.method.tolerance
     truncated = tolerance is not None and tolerance > FAR_ABOVE * u
-    size = 1.0 if relative else float(np.mean(terms)) or 1.0
+    size = _size(terms, relative=relative)
     return ErrorSeries(
         t, error, largest, walk or None, bias, u * size, truncated, _way(motion), relative, size
     )
@@ -206,6 +200,26 @@ def _energy_at(task: Task, orbit: int, t: float, y: Array) -> float:
     state[task.system.rows] = y
     point = dict(zip(task.system.inputs, (*state, t), strict=True))
     return float(task.system.graph.evaluate([task.system.hamiltonian], point, FLOAT64)[0])
+
+
+def _unit(motion: Trajectory, observable: str | Observable, at_start: float) -> tuple[float, bool]:
+    """Return what changes are divided by, and whether that makes them relative."""
+    name = observable if isinstance(observable, str) else observable.name
+    if isinstance(observable, Observable) and name != ENERGY:
+        return observable.unit, observable.relative
+    relative = motion.relative if name == ENERGY else at_start != 0.0
+    return at_start if relative else 1.0, relative
+
+
+def _size(terms: Array, *, relative: bool) -> float:
+    """Return what errors that are not relative are large beside, 1 of those that are."""
+    return 1.0 if relative else float(np.mean(terms)) or 1.0
+
+
+def _steps_of_one(motion: Trajectory) -> float:
+    """Return the steps of one orbit; those of many that choose their own are counted together."""
+    together = motion.y.ndim == 3 and not motion.method.engine.takes_step
+    return motion.steps / motion.y.shape[2] if together else motion.steps
 
 
 def _sizes_of_terms(motion: Trajectory, orbit: int) -> Array:
