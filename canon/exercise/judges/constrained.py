@@ -112,14 +112,21 @@ def _on_every_motion(reading: Reading) -> Iterator[Question]:
                 continue
             motions = all_motions(*plain, q, unknowns, domain, t)
             solution, branch, through = {}, motions.branch, motions.through
-        parts = tuple(
-            Part(f"claim {i + 1}", claim, through=through, key=f"claim[{i}]", written=functions)
-            for i, claim in open_.items()
-        )
+        parts = _parts(open_, through, functions)
         yield Same(parts, branch.domain, partial(_shown, solution if len(branches) == 1 else {}))
-    free = "it is true of anything" if not any(claims) else "it follows from the constraints alone"
+    free = "it follows from the constraints alone" if any(claims) else "it is true of anything"
     yield Tells(tuple(_on_any_motion(claims, rates, unknowns[: len(q)], branch) for branch in branches), free)
     yield Determines(partial(_left_open, claims, rates, system, unknowns, branches))
+
+
+def _parts(
+    claims: Mapping[int, Expr], through: Mapping[Symbol, Expr], functions: Mapping[Symbol, Expr]
+) -> tuple[Part, ...]:
+    """Return what is to vanish of claims that have numbers."""
+    return tuple(
+        Part(f"claim {i + 1}", claim, through=through, key=f"claim[{i}]", written=functions)
+        for i, claim in claims.items()
+    )
 
 
 def _not_among(claims: Sequence[Expr], system: Sequence[Expr]) -> dict[int, Expr]:
