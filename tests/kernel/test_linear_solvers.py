@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from canon.kernel.llvm.band_solver import BandSolver, band_order, is_narrow
-from canon.kernel.llvm.linear_solver import LinearSolver
 from canon.kernel.llvm.loop import compiled_function
 from canon.kernel.llvm.number_types import DOUBLE
+from canon.kernel.llvm.solvers.band_solver import BandSolver, band_order, is_narrow
+from canon.kernel.llvm.solvers.linear_solver import LinearSolver
 from canon.kernel.llvm.writer import Writer
 
 SIZES = [(1, 0), (5, 0), (7, 1), (12, 3), (40, 4), (6, 5)]

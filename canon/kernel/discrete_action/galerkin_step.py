@@ -21,9 +21,9 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from canon.kernel.discrete_action.repeated_changes import RepeatedChanges
-from canon.kernel.llvm.linear_solver import LinearSolver, large_array
 from canon.kernel.llvm.loop import METHOD, Loop, blocks_of, compile_loop, increase, steps_of
 from canon.kernel.llvm.number_types import DOUBLE, MachineType
+from canon.kernel.llvm.solvers.linear_solver import LinearSolver, large_array
 from canon.kernel.llvm.writer import Writer
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from canon.kernel.llvm.linear_solver import magnitude
 from canon.kernel.llvm.number_types import DOUBLE, SINGLE
+from canon.kernel.llvm.solvers.linear_solver import magnitude
 
 if TYPE_CHECKING:
     from canon.kernel.llvm.writer import Writer

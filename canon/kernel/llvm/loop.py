@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from canon.kernel.llvm.machine_code import APART, MachineCode, compiled
+from canon.kernel.llvm.machine_code import MachineCode, compiled
 from canon.kernel.llvm.number_types import DOUBLE, MachineType
 from canon.kernel.llvm.writer import HEAP, LIBRARY, Writer
 
@@ -169,10 +169,10 @@ def increase(w: Writer, y: str, e: str, i: str, coefficient: str, rate: str) -> 
     w.store(new, y, i)
 
 
-def compile_loop(w: Writer, n: int, *, compensated: bool, carry: int = 0, apart: bool = False) -> Loop:
-    """Compile what was written; ``apart`` where single numbers are to stay single."""
+def compile_loop(w: Writer, n: int, *, compensated: bool, carry: int = 0) -> Loop:
+    """Compile what was written."""
     return Loop(
-        compiled_function(w, "advance", PARAMETERS, SIGNATURE, apart=apart),
+        compiled_function(w, "advance", PARAMETERS, SIGNATURE),
         n,
         compensated,
         w.number,
@@ -181,12 +181,9 @@ def compile_loop(w: Writer, n: int, *, compensated: bool, carry: int = 0, apart:
     )
 
 
-def compiled_function(
-    w: Writer, name: str, parameters: str, signature: Sequence[object], *, apart: bool = False
-) -> MachineCode:
+def compiled_function(w: Writer, name: str, parameters: str, signature: Sequence[object]) -> MachineCode:
     """Compile what was written as one function."""
     body = w.body()  # first, as it may declare what it calls
-    head = [APART] if apart else []
-    ir = "\n".join([*head, *sorted(w.declarations), f"define void @{name}({parameters}) {{", body, "}"])
+    ir = "\n".join([*sorted(w.declarations), f"define void @{name}({parameters}) {{", body, "}"])
     called = [*(f"{function}{suffix}" for function in LIBRARY for suffix in ("", "f", "l")), *HEAP]
     return compiled(ir, name, signature, [function for function in called if f"@{function}(" in ir])

@@ -17,6 +17,7 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from canon.kernel.llvm.half_spills import may_spill_by_half
 from canon.kernel.llvm.kept_code import kept_or_made
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
     import llvmlite.binding as binding
 
-__all__ = ["APART", "MachineCode", "compiled", "simd_bytes"]
+__all__ = ["MachineCode", "compiled", "simd_bytes"]
 
 _COMPILING = threading.Lock()
 if hasattr(
@@ -34,14 +35,13 @@ if hasattr(
         before=_COMPILING.acquire, after_in_parent=_COMPILING.release, after_in_child=_COMPILING.release
     )
 
-_OPTIONS = "1: level 3, loops vectorized and unrolled, single numbers too in small modules"
+_OPTIONS = (
+    "2: level 3, loops vectorized and unrolled, single numbers too in small modules, none spilled by half"
+)
 """What :func:`object_code` does; kept code made with other words is not used."""
 
 _LARGE = 200_000
 """Above this size of a module the search for parallel scalars (SLP) takes longer than it saves."""
-
-APART = "; single numbers stay single"
-"""The first line of a module in which parallel scalars are not looked for."""
 
 
 @dataclass(frozen=True)
@@ -108,13 +108,22 @@ def object_code(ir: str, machine: binding.TargetMachine) -> bytes:
 
 def optimized(ir: str, machine: binding.TargetMachine) -> binding.ModuleRef:
     """Return a module as LLVM has optimized it for a processor."""
+    if len(ir) < _LARGE:
+        module = _optimized(ir, machine, parallel=True)
+        if not may_spill_by_half(str(module)):
+            return module
+    return _optimized(ir, machine, parallel=False)
+
+
+def _optimized(ir: str, machine: binding.TargetMachine, *, parallel: bool) -> binding.ModuleRef:
+    """Optimize a module; ``parallel`` where single numbers are to be computed side by side."""
     import llvmlite.binding as llvm
 
     module = llvm.parse_assembly(ir)
     module.verify()
     tuning = llvm.create_pipeline_tuning_options(speed_level=3)
     tuning.loop_vectorization = tuning.loop_unrolling = True
-    tuning.slp_vectorization = len(ir) < _LARGE and not ir.startswith(APART)
+    tuning.slp_vectorization = parallel
     builder = llvm.create_pass_builder(machine, tuning)
     builder.getModulePassManager().run(module, builder)
     return module

@@ -74,7 +74,7 @@ def mixing_loop(
             last = METHOD + weights * _ROW
             copies.rotate(w.load("%c", last), w.load("%c", last + 1))
         w.copy(copies.d, outer, size)
-    made = compile_loop(w, len(system.q), compensated=compensated, carry=2 * size, apart=True)
+    made = compile_loop(w, len(system.q), compensated=compensated, carry=2 * size)
     return replace(made, implicit=False)
 
 
@@ -131,7 +131,7 @@ def projecting_loop(
                 w.store(w.select(lost, projection.nothing, w.load(copies.y, i)), copies.y, i)
         w.copy(projection.guess, guesses, size)
         w.copy(projection.before, w.at(guesses, size), size)
-    return compile_loop(w, len(system.q), compensated=compensated, carry=carry, apart=True)
+    return compile_loop(w, len(system.q), compensated=compensated, carry=carry)
 
 
 def projecting_coefficients(weights: Sequence[Fraction], h: Fraction) -> list[Fraction]:

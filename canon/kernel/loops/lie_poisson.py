@@ -17,7 +17,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from canon.kernel.llvm.cayley_turn import across, turn_factor, write_turn
 from canon.kernel.llvm.circular_functions import sine_and_cosine, turning_functions
 from canon.kernel.llvm.formulas import LaneFormulas
 from canon.kernel.llvm.loop import (
@@ -31,6 +30,7 @@ from canon.kernel.llvm.loop import (
     steps_of,
 )
 from canon.kernel.llvm.number_types import DOUBLE, MachineType
+from canon.kernel.llvm.solvers.cayley_turn import across, turn_factor, write_turn
 from canon.kernel.llvm.writer import Writer
 from canon.kernel.program.slopes import slopes
 

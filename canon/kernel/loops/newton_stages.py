@@ -16,9 +16,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
-from canon.kernel.llvm.band_solver import BandSolver, band_memory, band_order, is_narrow
 from canon.kernel.llvm.lane_rows import store_row
-from canon.kernel.llvm.linear_solver import LinearSolver, large_array
+from canon.kernel.llvm.solvers.band_solver import BandSolver, band_memory, band_order, is_narrow
+from canon.kernel.llvm.solvers.linear_solver import LinearSolver, large_array
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Sequence

@@ -20,9 +20,9 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
-from canon.kernel.llvm.linear_solver import LinearSolver, eliminated, magnitude
 from canon.kernel.llvm.loop import METHOD, Loop, blocks_of, compile_loop, increase, steps_of
 from canon.kernel.llvm.number_types import DOUBLE, SINGLE, MachineType
+from canon.kernel.llvm.solvers.linear_solver import LinearSolver, eliminated, magnitude
 from canon.kernel.llvm.writer import Writer
 
 if TYPE_CHECKING:

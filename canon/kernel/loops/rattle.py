@@ -15,9 +15,9 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from canon.kernel.llvm.linear_solver import LinearSolver, eliminated, magnitude
 from canon.kernel.llvm.loop import METHOD, Loop, blocks_of, compile_loop, steps_of
 from canon.kernel.llvm.number_types import DOUBLE, SINGLE, MachineType
+from canon.kernel.llvm.solvers.linear_solver import LinearSolver, eliminated, magnitude
 from canon.kernel.llvm.writer import Writer
 
 if TYPE_CHECKING:

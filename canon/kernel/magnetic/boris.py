@@ -15,11 +15,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from canon.kernel.llvm.cayley_turn import turn_factor, write_turn
 from canon.kernel.llvm.formulas import LaneFormulas
-from canon.kernel.llvm.linear_solver import eliminated
 from canon.kernel.llvm.loop import METHOD, Loop, blocks_of, compile_loop, increase, steps_of
 from canon.kernel.llvm.number_types import DOUBLE, MachineType
+from canon.kernel.llvm.solvers.cayley_turn import turn_factor, write_turn
+from canon.kernel.llvm.solvers.linear_solver import eliminated
 from canon.kernel.llvm.writer import Writer
 from canon.kernel.magnetic.magnetic_form import NotMagneticError
 

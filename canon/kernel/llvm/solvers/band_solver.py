@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.kernel.llvm.linear_solver import LinearSolver
+from canon.kernel.llvm.solvers.linear_solver import LinearSolver
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

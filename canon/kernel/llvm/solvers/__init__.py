@@ -1,0 +1,1 @@
+"""Linear equations and turns written into compiled loops."""
