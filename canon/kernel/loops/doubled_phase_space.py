@@ -12,9 +12,6 @@ three evaluations a step of order 2 where it takes four in the middle), or a sym
 chosen so that the step, which takes it to −d, is symplectic in (q, p) itself (B. Jayawardana, T. Ohsawa, Math. Comp. 92
 (2022) 251–281, doi:10.1090/mcom/3778). F(d) = d + (d after the step) = 0 is solved with F' ≈ 2 + h N, N the
 linearisation of the motion of d, which is taken to first order in h: no matrix is made.
-
-LLVM's search for parallel scalars (SLP, in llvmlite 0.50) compiles some of these loops wrongly: the first step is off
-by 0.2. Single numbers stay single here (tests/flow/test_single_numbers_stay_single.py).
 """
 
 from __future__ import annotations
