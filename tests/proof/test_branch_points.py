@@ -106,3 +106,17 @@ def test_where_one_side_is_not_real_it_is_said():
 def test_what_is_given_may_jump_where_it_does():
     assert continuity(p + V(q / p), [q, p], given=[V(q / p)]).holds
     assert not continuity(p + V(q / p), [q, p], given=[V(q)]).holds
+
+
+NOTHING = sp.tan(q) - sin(q) / sp.cos(q)
+
+
+@pytest.mark.parametrize("function", [tanh, exp, atan, sp.cot, lambda u: log(2 + u)])
+def test_poles_that_cancel_inside_a_function_hide_no_jump(function):
+    assert continuity(p + function(1 + NOTHING), [q, p]).holds
+    assert continuity(p * function(1 / q - (1 + q) / q), [q, p]).holds
+
+
+@pytest.mark.parametrize("left", [sp.tan(q) - 2 * sin(q) / sp.cos(q), 1 / q - 2 * sp.cos(q) / q])
+def test_poles_that_do_not_cancel_do(left):
+    assert not continuity(p + tanh(1 + left), [q, p]).holds

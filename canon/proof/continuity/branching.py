@@ -27,6 +27,7 @@ from canon.proof.trees.affine_form import is_affine
 from canon.proof.trees.anatomy import anatomy
 from canon.proof.trees.polynomial import polynomial_factors
 from canon.proof.trees.sympy_types import arguments, by_name, free_symbols
+from canon.proof.vanish import vanishes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -112,7 +113,9 @@ def open_surfaces(f: Expr, moving: Sequence[Symbol], domain: Domain) -> list[Ope
         for gap, pool in pools.items()
         if not _is_of_one_kind(list(pool.branches.values()), domain) and not _keeps_away(gap, domain)
     ]
-    inside = [OpenSurface(gap) for gap in _poles_inside(terms, moving) if not _keeps_away(gap, domain)]
+    inside = [
+        OpenSurface(gap) for gap in _poles_inside(terms, moving, domain) if not _keeps_away(gap, domain)
+    ]
     known = {surface.gap for surface in mixed}
     return [*mixed, *(surface for surface in inside if surface.gap not in known)]
 
@@ -233,7 +236,7 @@ def _is_divided_by(term: Expr, gap: Expr, parts: Sequence[Expr]) -> bool:
 # -- poles inside functions ----------------------------------------------------------------------------
 
 
-def _poles_inside(terms: Sequence[Expr], moving: Sequence[Symbol]) -> list[Expr]:
+def _poles_inside(terms: Sequence[Expr], moving: Sequence[Symbol], domain: Domain) -> list[Expr]:
     """Return where functions in some terms are taken of poles across which what they are taken of changes its sign.
 
     One exponential that is a factor of all these terms is zero or infinite on either side, whatever else they hold.
@@ -242,7 +245,7 @@ def _poles_inside(terms: Sequence[Expr], moving: Sequence[Symbol]) -> list[Expr]
     for term in terms:
         for part in anatomy([term]).parts:
             if isinstance(part, sp.Expr) and part.has(*moving):
-                for gap in _poles_of_arguments(part, moving):
+                for gap in _poles_of_arguments(part, moving, domain):
                     found.setdefault(gap, []).append((part, term))
     return [gap for gap, uses in found.items() if not _is_common_exponential(uses)]
 
@@ -258,7 +261,7 @@ def _is_common_exponential(uses: Sequence[tuple[Expr, Expr]]) -> bool:
     return all(len(holding) == 1 and holding[0].as_base_exp()[0] in (part, sp.E) for holding in factors)
 
 
-def _poles_of_arguments(part: Expr, moving: Sequence[Symbol]) -> Iterator[Expr]:
+def _poles_of_arguments(part: Expr, moving: Sequence[Symbol], domain: Domain) -> Iterator[Expr]:
     given: tuple[Expr, ...] = ()
     if isinstance(part, sp.Pow) and part.exp.has(*moving):
         given = (part.exp,)
@@ -269,8 +272,14 @@ def _poles_of_arguments(part: Expr, moving: Sequence[Symbol]) -> Iterator[Expr]:
     ):
         given = arguments(part)
     for a in given:
-        if any(_poles(a, moving)):
+        if any(_poles(a, moving)) and not _cancel(a, moving, domain):
             yield from _poles(cast("Expr", sp.cancel(a)) if anatomy([a]).tree <= LARGE else a, moving)
+
+
+def _cancel(a: Expr, moving: Sequence[Symbol], domain: Domain) -> bool:
+    """Tell whether the terms of a sum that have poles are together proved to be zero, as tan x − sin x/cos x is."""
+    terms = [term for term in sp.Add.make_args(a) if any(_poles(term, moving))]
+    return len(terms) > 1 and vanishes(sp.Add(*terms), domain, SECONDS).holds
 
 
 def _poles(u: Expr, moving: Sequence[Symbol]) -> Iterator[Expr]:
