@@ -21,7 +21,7 @@ from canon.flow.system.hamiltonian_map import (
 from canon.flow.system.parameter_values import SpareParameters, check_given, check_known, symbols_in
 from canon.flow.system.scene_as_system import is_named, is_scene, opened, scene_of
 from canon.flow.system.start_of_motion import read_by_labels
-from canon.mechanics.hamilton.traced_function import is_rates_function, read_at_start
+from canon.mechanics.traced.rates_function import is_rates_function
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -84,9 +84,11 @@ def any_task(request: Request) -> tuple[Task, MovingSystem | None]:
         return task_from(course, request, request.y0), None
     if is_rates_function(request.system):
         refuse_swapped(request.t_span, request.y0)
-        begin, _ = two_ends(request.t_span)
+        from canon.mechanics.traced.traced_function import read_at_start  # only here: few come with functions
+
+        begin, end = map(float, two_ends(request.t_span))
         request = replace(request, y0=read_by_labels(request.y0))
-        request = replace(request, system=read_at_start(request.system, float(begin), request.y0))
+        request = replace(request, system=read_at_start(request.system, (begin, end), request.y0))
     if is_scene(request.system):
         system, y0, parameters = opened(request.system, request.y0, request.parameters or {})
         request = replace(request, system=system, y0=y0, parameters=SpareParameters(parameters))

@@ -76,7 +76,6 @@ from .hamilton.symmetry import is_gauge_equivalent as is_gauge_equivalent
 from .hamilton.symmetry import is_symmetry as is_symmetry
 from .hamilton.symmetry import noether_charge as noether_charge
 from .hamilton.symmetry import poissons_theorem as poissons_theorem
-from .hamilton.traced_function import field_of_function as field_of_function
 from .hamilton.vector_field import VectorField as VectorField
 from .hamilton.vector_field import hamiltonian_field as hamiltonian_field
 from .integrable.actions import ActionVariables as ActionVariables
@@ -189,3 +188,4 @@ from .reduction.routh import Routhian as Routhian
 from .reduction.routh import routhian as routhian
 from .reduction.singular import Singularity as Singularity
 from .reduction.singular import singularity as singularity
+from .traced.traced_function import field_of_function as field_of_function

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,6 +9,7 @@ import pytest
 import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy import special
 from scipy.integrate import solve_ivp
 
 from canon import VectorField, choose, propagate
@@ -90,21 +90,10 @@ def test_numbers_are_those_that_were_written(numbers: list[float], power: int) -
     assert sp.expand(field.components[1] - exact[2] + exact[3] * y0 * t) == 0
 
 
-def branching(t, y):
-    return [y[1], -y[0] if y[0] > 0 else y[0]]
-
-
-def zeros_of_floats(t, y):
-    rates = np.zeros(2)
-    rates[0] = y[1]
-    return rates
-
-
 REFUSED: dict[str, tuple[Callable[..., Any], str]] = {
-    "math.sin": (lambda t, y: [y[1], -math.sin(y[0])], "asks for the number or the sign"),
-    "a branch": (branching, "asks for the number or the sign"),
-    "a table": (lambda t, y: [y[1], np.interp(y[0], [0, 1], [0, 1])], "asks for the number or the sign"),
-    "an array of floats": (zeros_of_floats, r"numpy.zeros_like\(y\)"),
+    "an index": (lambda t, y: [y[1], [1, 2][int(y[0])]], "asks for the number of something that moves"),
+    "a long table": (lambda t, y: [y[1], np.interp(y[0], range(99), range(99))], "more than 60 places"),
+    "Bessel's function": (lambda t, y: [y[1], special.jv(1, y[0])], "jv of something that moves"),
     "odeint's order": (lambda y, t: [y[1], -y[0]], "has the order of SciPy's odeint"),
     "further arguments": (lambda t, y, k: [y[1], -k * y[0]], "put values of k in"),
     "another for numbers": (
@@ -131,7 +120,11 @@ COMPLEX: dict[str, tuple[Callable[..., Any], Any, str]] = {
     ),
     "an array of complex numbers": (lambda t, y: -y, np.array([1 + 2j]), "the start .* is complex"),
     "a text": (lambda t, y: -y, ["one"], "the start .* should be real numbers"),
-    "a complex factor": (lambda t, y: [1j * y[0]], [1.0], "1j is no formula and no finite number"),
+    "a complex factor": (
+        lambda t, y: [1j * y[0]],
+        [1.0],
+        "its rates are complex; give real and imaginary parts",
+    ),
     "complex for numbers": (
         lambda t, y: [y[0] + (0j if isinstance(y[0], float) else 0)],
         [1.0],

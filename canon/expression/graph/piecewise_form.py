@@ -1,7 +1,8 @@
 """Functions made of pieces, written with signs and moduli: Piecewise, Max, Min and Heaviside for the expression graph.
 
 A condition a > b is the number χ = (1 + sign(a − b))/2, which is 1 where it holds and 0 where it does not. On a border
-between two pieces, where χ = 1/2, the value is the mean of both.
+between two pieces, where χ = 1/2, the value is the mean of both. A root of what a condition says is positive, as
+(−x)^(3/2) where x < 0, is taken of max(−x, 0), so that it has a value on the other side too.
 """
 
 from __future__ import annotations
@@ -13,6 +14,9 @@ import sympy as sp
 from sympy import Expr
 
 __all__ = ["without_pieces"]
+
+_LONG = 60
+"""Operations of a radicand that is compared with a condition."""
 
 _MADE_OF_PIECES = (sp.Piecewise, sp.Max, sp.Min, sp.Heaviside)
 
@@ -42,7 +46,22 @@ def without_pieces(expression: Expr) -> Expr:
     given: Any = expression
     if not given.has(*_MADE_OF_PIECES):
         return expression
+    given = given.replace(_is_root_of_extreme, lambda e: _in_one_piece(e.base) ** e.exp)
     return given.replace(lambda e: isinstance(e, _MADE_OF_PIECES), _written)
+
+
+def _is_root_of_extreme(e: Any) -> bool:
+    return isinstance(e, sp.Pow) and isinstance(e.base, sp.Max | sp.Min) and e.exp.is_integer is False
+
+
+def _in_one_piece(extreme: Any) -> Any:
+    """Return max(x, y) as y + (x − y) χ, of which nothing but y is left where x < y: a root of 0 is 0 then."""
+    side = 1 if isinstance(extreme, sp.Max) else -1
+    arguments: Any = extreme.args
+    last, *others = arguments  # numbers come first
+    for other in others:
+        last = last + (other - last) * _where(side * (other - last))
+    return last
 
 
 def _written(whole: Any) -> Any:
@@ -65,11 +84,32 @@ def _pieces(whole: Any) -> Any:
             f"{_short(whole)} has no value where none of its conditions holds: say what it is there, "
             "Piecewise(…, (value, True))"
         )
-    value, condition = whole.args[-1]
+    value, _ = whole.args[-1]
+    for condition in conditions[:-1]:
+        value = _with_values_elsewhere(value, sp.Not(condition))
     for value_here, condition in reversed(whole.args[:-1]):
         here = _number(condition, whole)
-        value = value_here * here + value * (1 - here)
+        value = _with_values_elsewhere(value_here, condition) * here + value * (1 - here)
     return value
+
+
+def _with_values_elsewhere(value: Any, condition: Any) -> Any:
+    """Return a piece in which roots of what is positive where its condition holds are zero where it does not."""
+    if not isinstance(condition, sp.StrictGreaterThan | sp.GreaterThan | sp.StrictLessThan | sp.LessThan):
+        return value
+    greater: Any = condition.gts
+    gap = greater - condition.lts
+    roots = [p for p in value.atoms(sp.Pow) if p.exp.is_positive and p.exp.is_integer is False]
+    by = {p: (p.base * _where(p.base)) ** p.exp for p in roots if _rises_with(p.base, gap)}
+    return value.xreplace(by)
+
+
+def _rises_with(base: Any, gap: Any) -> bool:
+    """Tell whether something is a positive multiple of another."""
+    if base.is_nonnegative or sp.count_ops(base) + sp.count_ops(gap) > _LONG:
+        return False
+    ratio: Any = sp.cancel(base / gap)
+    return bool(ratio.is_number and ratio.is_positive)
 
 
 def _number(condition: Any, whole: Any) -> Any:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from itertools import pairwise
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -77,12 +78,24 @@ def _is_whole(node: Node) -> bool:
     return node.kind == "number" and node.value.denominator == 1
 
 
-def _direction(graph: Graph, node: int) -> int:
-    """Return what a function and its multiples have in common."""
-    _, rest = factored(graph, node)
-    if rest is None:
-        return node
-    return min(rest, factored(graph, graph.negative(rest))[1] or rest)
+def _direction(graph: Graph, node: int) -> frozenset[tuple[int, Fraction]]:
+    """Return what a function and its multiples have in common, sums within sums being added up."""
+    terms: dict[int, Fraction] = {}
+
+    def add(part: int, times: Fraction) -> None:
+        factor, rest = factored(graph, part)
+        if rest is None:
+            terms[graph.one] = terms.get(graph.one, Fraction(0)) + times * factor
+        elif graph.nodes[rest].kind == "add":
+            for operand in graph.nodes[rest].operands:
+                add(operand, times * factor)
+        else:
+            terms[rest] = terms.get(rest, Fraction(0)) + times * factor
+
+    add(node, Fraction(1))
+    left = {part: times for part, times in terms.items() if times}
+    unit = left[min(left)] if left else Fraction(1)
+    return frozenset((part, times / unit) for part, times in left.items())
 
 
 @dataclass(frozen=True, eq=False)

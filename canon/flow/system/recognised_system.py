@@ -15,7 +15,6 @@ from canon.flow.equations.routhian_motion import routhian_motion, routhian_state
 from canon.flow.system.parameter_values import symbols_in
 from canon.flow.system.written_with_signs import written_with_signs
 from canon.mechanics.hamilton.poisson_system import PoissonSystem
-from canon.mechanics.hamilton.traced_function import is_rates_function
 from canon.mechanics.hamilton.vector_field import VectorField
 from canon.mechanics.lagrange.appell import GibbsAppell
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
@@ -24,6 +23,7 @@ from canon.mechanics.lagrange.newton_euler import NewtonEuler
 from canon.mechanics.lagrange.sympy_bridge import QuasiMotion, from_sympy_mechanics
 from canon.mechanics.lagrange.unilateral import UnilateralLagrangian
 from canon.mechanics.reduction.routh import Routhian
+from canon.mechanics.traced.rates_function import is_rates_function
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence

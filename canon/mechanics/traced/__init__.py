@@ -1,0 +1,1 @@
+"""Functions f(t, y) of Python, read as formulas."""

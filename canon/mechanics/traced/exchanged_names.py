@@ -1,0 +1,390 @@
+"""Exchanged names: a function of the user's whose ``numpy``, ``math`` and ``float`` let formulas pass.
+
+``numpy.zeros(4)`` has places for numbers only, and ``math.sin`` takes nothing else. What a function calls by names of
+its module or of the functions around it is exchanged in a copy of it; the module itself stays as it is.
+"""
+
+from __future__ import annotations
+
+import builtins
+import copy
+import dis
+import functools
+import math
+import types
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from canon.mechanics.traced.traced_array import (
+    TracedArray,
+    by_function,
+    interpolated,
+    piecewise_polynomial,
+    solved,
+)
+from canon.mechanics.traced.traced_number import OF_NUMBERS, is_traced
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+__all__ = ["with_exchanged_names"]
+
+
+def with_exchanged_names(f: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a copy of a function in which NumPy's, Python's and SciPy's functions take formulas.
+
+    Examples
+    --------
+    >>> import sympy
+    >>> from canon.mechanics.traced.traced_number import TracedNumber
+    >>> q = TracedNumber(sympy.Symbol("q", real=True))
+    >>> with_exchanged_names(lambda u: math.sin(u) + max(u, 0.5))(q)
+    sin(q) + Max(1/2, q)
+    """
+    return cast("Callable[..., Any]", _Exchange().of(f))
+
+
+class _Exchange:
+    """One pass through a function and what it calls; each is exchanged once."""
+
+    def __init__(self) -> None:
+        self.done: dict[int, Any] = {}
+        self.kept: list[Any] = []  # so that no id is used again
+
+    def of(self, x: Any) -> Any:
+        """Return what stands for a value; itself where nothing has to."""
+        known = _known(x)
+        if known is not None:
+            return known
+        if id(x) not in self.done:
+            self.kept.append(x)
+            self.done[id(x)] = x
+            self._exchange(x)
+        return self.done[id(x)]
+
+    def _exchange(self, x: Any) -> None:
+        match x:
+            case types.FunctionType():
+                self._function(x)
+            case functools.partial():
+                given = {key: self.of(value) for key, value in x.keywords.items()}
+                self.done[id(x)] = functools.partial(self.of(x.func), *map(self.of, x.args), **given)
+            case types.MethodType():
+                owner = self.of(x.__self__)
+                self.done[id(x)] = getattr(owner, x.__func__.__name__, x)
+            case _ if _is_spline(x):
+                self.done[id(x)] = piecewise_polynomial(x.x, x.c)
+            case _ if _is_table(x):
+                self.done[id(x)] = _of_table(x)
+            case _ if isinstance(getattr(x, "py_func", None), types.FunctionType):
+                self.done[id(x)] = self.of(x.py_func)
+            case _ if isinstance(getattr(x, "pyfunc", None), types.FunctionType):
+                self.done[id(x)] = np.vectorize(self.of(x.pyfunc), otypes=[object])
+            case _ if isinstance(x, tuple | list | dict):
+                self._container(cast("Any", x))
+            case _ if _is_of_user(x):
+                self._object(x)
+            case _:
+                pass
+
+    def _function(self, f: types.FunctionType) -> None:
+        scope: dict[str, Any] = dict(f.__globals__)
+        cells = tuple(types.CellType() for _ in f.__closure__ or ())
+        new = types.FunctionType(f.__code__, scope, f.__name__, f.__defaults__, cells)
+        new.__kwdefaults__ = f.__kwdefaults__
+        new.__dict__.update(f.__dict__)
+        self.done[id(f)] = new
+        for name in {*_names(f.__code__)}:
+            if name in scope:
+                scope[name] = self.of(scope[name])
+            elif name in _OF_PYTHON:
+                scope[name] = _OF_PYTHON[name]
+        changed = {*_changed(f.__code__)}
+        for name in changed & scope.keys():
+            scope[name] = _Remembered.of(name, scope[name])
+        for cell, old in zip(cells, f.__closure__ or (), strict=True):
+            try:
+                cell.cell_contents = self.of(old.cell_contents)
+            except ValueError:  # a name that has no value yet
+                continue
+        for cell, name in zip(cells, f.__code__.co_freevars, strict=True):
+            if name in changed:
+                cell.cell_contents = _Remembered.of(name, cell.cell_contents)
+        if f.__defaults__:
+            new.__defaults__ = tuple(map(self.of, f.__defaults__))
+
+    def _container(self, x: Any) -> None:
+        values = list(x.values() if isinstance(x, dict) else x)
+        new = [self.of(value) for value in values]
+        if all(a is b for a, b in zip(values, new, strict=True)):
+            return
+        if isinstance(x, dict):
+            self.done[id(x)] = dict(zip(cast("dict[Any, Any]", x), new, strict=True))
+        else:
+            self.done[id(x)] = type(x)(*new) if hasattr(x, "_fields") else type(x)(new)
+
+    def _object(self, x: Any) -> None:
+        """Exchange the methods of an object of the user's own class, and the functions it holds, in a copy."""
+        kind = type(x)
+        own = {
+            name: value
+            for base in reversed(kind.__mro__)
+            if base is not object
+            for name, value in vars(base).items()
+        }
+        try:
+            new = copy.copy(x)
+            methods: dict[str, Any] = {}
+            self.done[id(x)] = new
+            for name, value in own.items():
+                match value:
+                    case types.FunctionType():
+                        methods[name] = self.of(value)
+                    case staticmethod() | classmethod():
+                        methods[name] = type(value)(self.of(cast("Any", value).__func__))
+                    case property() if value.fget is not None:
+                        methods[name] = property(self.of(value.fget), value.fset)
+                    case _:
+                        pass
+            new.__class__ = type(kind.__name__, (kind,), methods)
+            for name, value in list(vars(new).items()):
+                object.__setattr__(new, name, self.of(value))
+        except TypeError:  # such an object can't be copied or has a layout of its own
+            self.done[id(x)] = x
+
+
+def _names(code: types.CodeType) -> Iterator[str]:
+    yield from code.co_names
+    for constant in code.co_consts:
+        if isinstance(constant, types.CodeType):
+            yield from _names(constant)
+
+
+def _changed(code: types.CodeType) -> Iterator[str]:
+    """Yield the names around a function that it gives new values."""
+    for step in dis.get_instructions(code):
+        if step.opname == "STORE_GLOBAL" or (
+            step.opname == "STORE_DEREF" and step.argval in code.co_freevars
+        ):
+            yield step.argval
+
+
+class _Remembered:
+    """A number that a function changes whenever it is called: no formula may hold it."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+
+    @classmethod
+    def of(cls, name: str, value: Any) -> Any:
+        return cls(name) if isinstance(value, int | float) else value
+
+    def __repr__(self) -> str:
+        return f"{self.name}, which it changes itself when it is called,"
+
+    def _counted(self, _: Any) -> _Remembered:
+        return self
+
+    def _asked(self, *_: Any) -> Any:
+        raise TypeError(f"it asks for {self.name}, which it changes itself when it is called")
+
+    __add__ = __radd__ = __sub__ = __mul__ = _counted
+    __bool__ = __float__ = __int__ = __lt__ = __le__ = __gt__ = __ge__ = __eq__ = __ne__ = __mod__ = _asked
+    __hash__ = None  # type: ignore[assignment]
+
+
+def _is_of_user(x: Any) -> bool:
+    kind = type(x)
+    if isinstance(x, type | types.ModuleType | np.ndarray) or not hasattr(x, "__dict__"):
+        return False
+    return kind.__module__.partition(".")[0] not in (
+        "builtins",
+        "numpy",
+        "scipy",
+        "sympy",
+        "canon",
+        "types",
+        "functools",
+    )
+
+
+def _is_spline(x: Any) -> bool:
+    return (
+        type(x).__module__.startswith("scipy.interpolate")
+        and hasattr(x, "c")
+        and hasattr(x, "x")
+        and (np.ndim(x.c) == 2 and len(x.x) == np.shape(x.c)[1] + 1)
+    )
+
+
+def _is_table(x: Any) -> bool:
+    return type(x).__name__ == "interp1d" and getattr(x, "_kind", "") == "linear" and np.ndim(x.y) == 1
+
+
+def _of_table(x: Any) -> Callable[[Any], Any]:
+    return lambda u: interpolated(u, x.x, x.y)
+
+
+def _known(x: Any) -> Any:
+    """Return what stands for NumPy, Python's ``math`` and their functions."""
+    if x is np:
+        return _NUMPY
+    if x is np.linalg:
+        return _LINEAR
+    if x is math:
+        return _MATH
+    if getattr(x, "__name__", None) == "scipy.linalg":
+        return _LINEAR
+    try:
+        return _STANDING_IN.get(x)
+    except TypeError:  # what has no hash
+        return None
+
+
+# -- NumPy ---------------------------------------------------------------------------------------------
+
+
+class _Module:
+    """A module of which some functions are exchanged."""
+
+    def __init__(self, module: Any, own: dict[str, Any]) -> None:
+        self._module = module
+        self._own = own
+
+    def __getattr__(self, name: str) -> Any:
+        return self._own[name] if name in self._own else getattr(self._module, name)
+
+
+def _room(value: Any) -> Callable[..., Any]:
+    """Return a maker of arrays that have room for formulas."""
+
+    def made(shape: Any, *_: Any, **__: Any) -> Any:
+        found = np.empty(shape, dtype=object)
+        found[...] = value
+        return found.view(TracedArray)
+
+    return made
+
+
+def _full(shape: Any, value: Any, *_: Any, **__: Any) -> Any:
+    return _room(value)(shape)
+
+
+def _array(x: Any, *args: Any, **how: Any) -> Any:
+    if is_traced(x):
+        return np.array(x, dtype=object).view(TracedArray)
+    if isinstance(x, TracedArray):  # of numbers only
+        return x.copy()
+    if args and args[0] is _Float:
+        args = (float, *args[1:])
+    if how.get("dtype") is _Float:
+        how = {**how, "dtype": float}
+    return np.array(x, *args, **how)
+
+
+def _by(function: Any) -> Callable[..., Any]:
+    """Return one of NumPy's functions with its formulas seen in lists too."""
+
+    def of(*args: Any, **how: Any) -> Any:
+        if any(map(is_traced, (*args, *how.values()))):
+            return by_function(function, args, how)
+        return function(*args, **how)
+
+    return of
+
+
+def _joined(function: Any) -> Callable[..., Any]:
+    def of(*args: Any, **how: Any) -> Any:
+        found = function(*args, **{key: value for key, value in how.items() if key != "dtype"})
+        return found.view(TracedArray) if found.dtype == object else found
+
+    return of
+
+
+def _solve(matrix: Any, right: Any, *_: Any, **__: Any) -> Any:
+    return solved(matrix, right)
+
+
+_OWN: dict[str, Any] = {
+    "zeros": _room(0), "empty": _room(0), "ones": _room(1), "full": _full, "array": _array, "asarray": _array,
+    "asanyarray": _array, "ascontiguousarray": _array, "atleast_1d": _joined(np.atleast_1d),
+    **{
+        name: _joined(getattr(np, name))
+        for name in ("concatenate", "hstack", "vstack", "stack", "column_stack", "append")
+    },
+    **{name: _by(getattr(np, name)) for name in ("where", "clip", "select", "piecewise", "interp", "sinc")},
+}  # fmt: skip
+_LINEAR = _Module(np.linalg, {"solve": _solve, "inv": _by(np.linalg.inv), "norm": _by(np.linalg.norm)})
+_NUMPY = _Module(np, {**_OWN, "linalg": _LINEAR})
+
+# -- Python --------------------------------------------------------------------------------------------
+
+
+class _AsFloat(type):
+    def __instancecheck__(cls, x: object) -> bool:
+        return isinstance(x, float)
+
+
+class _Float(float, metaclass=_AsFloat):
+    """``float`` for what may be a formula."""
+
+    def __new__(cls, x: Any = 0.0) -> Any:
+        if isinstance(x, np.ndarray) and x.size == 1:
+            x = x.item()
+        return x if is_traced(x) else float(x)
+
+
+def _extreme(name: str) -> Callable[..., Any]:
+    of_python, of_formulas = getattr(builtins, name), OF_NUMBERS[f"{name}imum"]
+
+    def of(*args: Any, **how: Any) -> Any:
+        given = list(args[0]) if len(args) == 1 and not how else list(args)
+        if how or not any(map(is_traced, given)):
+            return of_python(*args, **how)
+        return functools.reduce(of_formulas, given)
+
+    return of
+
+
+_OF_PYTHON: dict[str, Any] = {"float": _Float, "max": _extreme("max"), "min": _extreme("min")}
+
+_NAMES_IN_MATH = {
+    **{name: name for name in (
+        "sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "expm1", "log1p", "log2", "log10", "sqrt", "fabs", "hypot",
+        "copysign", "degrees", "radians", "cbrt", "floor", "ceil", "exp2",
+    )},
+    "asin": "arcsin", "acos": "arccos", "atan": "arctan", "atan2": "arctan2", "asinh": "arcsinh", "acosh": "arccosh",
+    "atanh": "arctanh", "pow": "float_power", "isnan": "isnan", "isinf": "isinf", "isfinite": "isfinite",
+}  # fmt: skip
+
+
+def _of_math(function: Callable[..., Any], name: str) -> Callable[..., Any]:
+    def of(*numbers: Any) -> Any:
+        if not any(map(is_traced, numbers)):
+            return function(*numbers)
+        if any(isinstance(x, np.ndarray) and x.size > 1 for x in numbers):
+            raise TypeError(f"math.{function.__name__} of an array; numpy's function takes one")
+        return OF_NUMBERS[name](*(x.item() if isinstance(x, np.ndarray) else x for x in numbers))
+
+    return of
+
+
+def _logarithm(x: Any, *base: Any) -> Any:
+    if not any(map(is_traced, (x, *base))):
+        return math.log(x, *base)
+    found = OF_NUMBERS["log"](x)
+    return found / OF_NUMBERS["log"](base[0]) if base else found
+
+
+_IN_MATH: dict[str, Any] = {
+    own: _of_math(getattr(math, own), name) for own, name in _NAMES_IN_MATH.items() if hasattr(math, own)
+} | {"log": _logarithm}
+_MATH = _Module(math, _IN_MATH)
+
+_STANDING_IN: dict[Any, Any] = {
+    **{getattr(np, name): own for name, own in _OWN.items()},
+    **{getattr(math, name): own for name, own in _IN_MATH.items()},
+    np.linalg.solve: _solve, np.linalg.inv: _by(np.linalg.inv), np.linalg.norm: _by(np.linalg.norm),
+    builtins.float: _Float, builtins.max: _OF_PYTHON["max"], builtins.min: _OF_PYTHON["min"],
+}  # fmt: skip
