@@ -165,8 +165,15 @@ def test_a_process_that_others_keep_from_the_processor_is_waited_for():
     with Worker() as worker:
         assert worker.judge(Claim("first", "equality-only", {"lhs": "1", "rhs": "1"})).status == "holds"
         pid = worker.pid
-        for seconds, sign in ((0.5, signal.SIGSTOP), (2.0 + ABANDONED + 0.5, signal.SIGCONT)):
-            threading.Timer(seconds, os.kill, (pid, sign)).start()
+        timers = [
+            threading.Timer(seconds, os.kill, (pid, sign))
+            for seconds, sign in ((0.5, signal.SIGSTOP), (2.0 + ABANDONED + 0.5, signal.SIGCONT))
+        ]
+        for timer in timers:
+            timer.start()
         found = worker.judge(Claim("a", "equality-only", keys, budget=2.0))
+        for timer in timers:
+            timer.cancel()  # a process that had ended before could not be woken
+            timer.join()
     assert found.status != "invalid"
     assert BROKE_OFF not in found.known

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.flow.method.adaptive_methods import Taylor
-from canon.flow.propagation import propagate
+from canon.flow.request import Request
 from canon.mechanics.integrable.actions import angles
 from canon.mechanics.integrable.cycles import CycleKind
 from canon.progress import reporting
+from canon.study.motion.quiet_run import run_quietly
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -105,14 +106,16 @@ def orbit_frequencies(
     }
     with reporting(progress) as report:
         for precision in ("double", "quad"):
-            run: Any = propagate(
-                H,
-                (0.0, float(times[-1])),
-                start,
-                method=Taylor(),
-                times=times,
-                parameters=known,
-                precision=precision,
+            run: Any = run_quietly(
+                Request(
+                    H,
+                    (0.0, float(times[-1])),
+                    start,
+                    method=Taylor(),
+                    times=times,
+                    parameters=known,
+                    precision=precision,
+                )
             )
             kept = float(np.abs(run.energy_error).max())
             if kept < KEPT:
