@@ -66,6 +66,16 @@ def test_exponents_of_two_saddles_are_their_rates():
     np.testing.assert_allclose(found.errors, 2 / 60, rtol=1e-6)
 
 
+@pytest.mark.parametrize("mass", [1e-9, 1.0, 1e6, 1e12])
+def test_exponents_do_not_depend_on_the_unit_of_mass(mass):
+    """Deviations of which momenta are 10⁹ times the coordinates are not told apart by their plain lengths."""
+    m = sp.Rational(mass)
+    p, r = x.momentum, y.momentum
+    H = Hamiltonian((p**2 + r**2) / (2 * m) - m * x**2 / 2 - 2 * m * y**2, [x, y], [p, r])
+    found = lyapunov_spectrum(H, (0, 40), [1e-9, 0, 0, 1e-9 * mass], samples=40)
+    np.testing.assert_allclose(found.exponents, [2, 1, -1, -2], atol=1e-2)
+
+
 def test_a_chaotic_and_a_regular_orbit_are_told_apart_by_every_indicator():
     starts = np.array([REGULAR, CHAOTIC]).T
     wanted = [Regularity.REGULAR, Regularity.CHAOTIC]

@@ -11,6 +11,7 @@ import numpy as np
 from canon.flow.integrate import integrate
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.run.sampling_plan import Sampling, adaptive_plan, fixed_plan
+from canon.flow.tangent.deviation_units import deviation_units
 from canon.flow.tangent.taylor_stretches import TaylorStretches
 from canon.kernel.program.variational import variational
 
@@ -63,7 +64,8 @@ class VariationalDeviations:
         self.taylor = TaylorStretches.of(task, self.larger)
         chosen = np.arange(task.states[0].shape[1]) if orbits is None else orbits
         self.high, self.low = (part[:, chosen].copy() for part in task.states)
-        self.frames = np.repeat(frame[:, :, np.newaxis], len(chosen), axis=2)
+        self.unit = self._units() if orthogonal and len(chosen) else np.ones(len(frame))
+        self.frames = np.repeat((frame * self.unit[:, np.newaxis])[:, :, np.newaxis], len(chosen), axis=2)
         self.sample, self.parts = 0, [1] * len(chosen)
 
     def advance(self) -> Array:
@@ -94,6 +96,10 @@ class VariationalDeviations:
         """Return the states, shape (2n, orbits)."""
         return self.high.copy()
 
+    def _units(self) -> Array:
+        """Return the sizes of deviations that are kept orthonormal."""
+        return deviation_units(self.task.system, self.high[:, 0], float(self.task.plan.instants[0]))
+
     def _one(self, k: int) -> Array:
         """Go to the next sample with one orbit, in as many stretches as its deviations ask for."""
         if not np.isfinite(self.high[:, k]).all():
@@ -117,12 +123,12 @@ class VariationalDeviations:
     def _stretches(self, k: int) -> tuple[Array, float, float]:
         growth, left, largest = np.zeros(self.frames.shape[1]), 1.0, 0.0
         for plan in _parts_of(self.task.plan, self.sample, self.parts[k]):
-            moved = self._moved(k, plan)
+            moved = self._moved(k, plan) / self.unit[:, np.newaxis]
             before = np.linalg.norm(moved, axis=0)
             if self.orthogonal:
                 frame, triangle = np.linalg.qr(moved)
                 lengths = np.diag(triangle)
-                self.frames[:, :, k] = frame * np.sign(lengths)
+                self.frames[:, :, k] = frame * np.sign(lengths) * self.unit[:, np.newaxis]
                 lengths = np.abs(lengths)
             else:
                 lengths = before
