@@ -168,6 +168,8 @@ class Trajectory:
         ------
         KeyError
             Nothing is called so.
+        TypeError
+            It is a number.
 
         Examples
         --------
@@ -183,6 +185,10 @@ class Trajectory:
                 return self.observables[what]
             if what in ("t", "energy", "work") and what not in self.record.names:
                 return {"t": lambda: self.t, "energy": lambda: self.energy, "work": lambda: self.work}[what]()
+        if isinstance(what, int | float | slice | tuple):
+            raise TypeError(
+                f"motion[{what!r}] asks for no variable: write motion[{self.record.names[0]!r}], or motion.y[{what!r}]"
+            )
         return self.record.along(what)
 
     @property

@@ -207,6 +207,12 @@ def _parted(
     kept = independent_rows(rows)
     if len(kept) == len(given):
         return constrained(found, holonomic, nonholonomic), []
+    if not kept:
+        which = " and ".join(f"{f} = 0" for f, _ in given)
+        raise ValueError(
+            f"at the start {which} restricts no velocity, as its gradient vanishes there: write (…)**2 = 0 as … = 0, "
+            "and start where the constraints have gradients"
+        )
     chosen = ([given[i][0] for i in kept if given[i][1] == wanted] for wanted in (True, False))
     return constrained(found, *chosen), [(i, each[i]) for i in range(len(given)) if i not in kept]
 

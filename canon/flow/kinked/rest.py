@@ -28,7 +28,10 @@ def nothing_moves(kinks: Kinks, signs: Signs, k: int, at: Place) -> bool:
     rate = kinks.rate_at_rest(signs, k)
     if rate is None or rate == kinks.system.graph.zero:
         return rate is not None
-    resting = kinks.regime(put(signs, k, HELD)).system
+    try:
+        resting = kinks.regime(put(signs, k, HELD)).system
+    except ZeroDivisionError:  # rates that are infinite there, as of a potential √|x|
+        return False
     rates = [rate, *resting.velocity, *resting.force]
     return kinks.system.autonomous and not any(at.values(resting, rates))
 

@@ -89,11 +89,20 @@ def sights(unit: float) -> tuple[float, ...]:
     At the first exp(−x) is of no account yet, at the second 1 − tanh² x and 1/cosh² x begin to be, at the third higher
     powers.
 
+    Raises
+    ------
+    ValueError
+        The rounding unit is beyond the range of doubles.
+
     Examples
     --------
     >>> [round(x) for x in sights(2.0**-52)]
     [50, 17, 6]
     """
+    if unit == 0:
+        raise ValueError(
+            "a precision of more than 300 decimal digits is beyond what is known here: give fewer"
+        )
     digits = -math.log(unit)
     saturated = digits / 2 - 1
     return (_MARGIN + digits, saturated, saturated / _FARTHER_IN)
