@@ -8,7 +8,8 @@ in δ, as µ_ij + µ_ji = 1.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import functools
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -33,6 +34,9 @@ __all__ = ["numbers_of_method", "tangent_gauss_loop"]
 _ITERATIONS = 100
 _SETTLED = Fraction(1, 2**54)
 """A change of ΔL that is this part of the largest ΔY is lost in rounding; the last iteration makes it smaller still."""
+
+_SMALL = 16
+"""Numbers of a deviation up to which several are moved by turns: more would not stay near the processor."""
 
 _CONVERGED = Fraction(1, 2**40)
 """A last change above this part means that the iteration has not converged."""
@@ -122,25 +126,47 @@ class _TangentStages:
         return len(self.matrix.rows)
 
     def write(self, vectors: int) -> None:
-        """Move every deviation."""
-        w, v = self.iteration.w, self.iteration.v
-        with w.loop(0, vectors) as g:
-            own = w.at(self.array, w.let(f"mul i64 {g}, {self.size}"))
-            with w.loop(0, self.size) as i:
-                v.store(v.constant(Fraction(0)), self.delta, i)
-            v.store(v.constant(Fraction(0)), self.change, 0)
+        """Move every deviation; some small ones by turns, so that none waits for its own last result."""
+        w = self.iteration.w
+        together = next(k for k in (4, 3, 2, 1) if vectors % k == 0) if self.size <= _SMALL else 1
+        others = [self._with_own_arrays() for _ in range(together - 1)]
+        with w.loop(0, vectors // together) as g:
+            first = w.let(f"mul i64 {g}, {together * self.size}")
+            places = [w.let(f"add i64 {first}, {k * self.size}") for k in range(together)]
+            each = [(one, w.at(self.array, at)) for one, at in zip((self, *others), places, strict=True)]
+            for one, _ in each:
+                one._begin()
             with w.loop(0, _ITERATIONS):
-                self._once(own)
-                w.leave_if(self._has_settled())
-            lost = w.let(f"xor i1 {self._is_below(_CONVERGED)}, true")
-            with w.loop(0, self.size) as i:
-                found = v.load(self.delta, i)
-                # A sum over stages from the smallest: the deviation itself is added last.
-                change = w.constant(Fraction(0))
-                for j in range(self.iteration.method.stages):
-                    change = w.algebra("add", change, v.lane(found, j))
-                new = w.algebra("add", w.load(own, i), change)
-                w.store(w.select(lost, w.nan(), new), own, i)
+                for one, own in each:
+                    one._once(own)
+                settled = [one._has_settled() for one, _ in each]
+                w.leave_if(functools.reduce(lambda a, b: w.let(f"and i1 {a}, {b}"), settled))
+            for one, own in each:
+                one._end(own)
+
+    def _with_own_arrays(self) -> _TangentStages:
+        v = self.iteration.v
+        delta, moved = v.array(self.size), v.array(self.size)
+        return replace(self, delta=delta, moved=moved, change=v.array(1), before=v.array(1), reach=v.array(1))
+
+    def _begin(self) -> None:
+        w, v = self.iteration.w, self.iteration.v
+        with w.loop(0, self.size) as i:
+            v.store(v.constant(Fraction(0)), self.delta, i)
+        v.store(v.constant(Fraction(0)), self.change, 0)
+
+    def _end(self, own: str) -> None:
+        """Add the stages to the deviation; NaN where the iteration has not converged."""
+        w, v = self.iteration.w, self.iteration.v
+        lost = w.let(f"xor i1 {self._is_below(_CONVERGED)}, true")
+        with w.loop(0, self.size) as i:
+            found = v.load(self.delta, i)
+            # A sum over stages from the smallest: the deviation itself is added last.
+            change = w.constant(Fraction(0))
+            for j in range(self.iteration.method.stages):
+                change = w.algebra("add", change, v.lane(found, j))
+            new = w.algebra("add", w.load(own, i), change)
+            w.store(w.select(lost, w.nan(), new), own, i)
 
     def _once(self, own: str) -> None:
         """Write one iteration, ΔY from ΔL and ΔL from ΔY."""
