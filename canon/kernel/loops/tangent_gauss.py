@@ -135,27 +135,28 @@ class _TangentStages:
             places = [w.let(f"add i64 {first}, {k * self.size}") for k in range(together)]
             each = [(one, w.at(self.array, at)) for one, at in zip((self, *others), places, strict=True)]
             for one, _ in each:
-                one._begin()
+                one.begin()
             with w.loop(0, _ITERATIONS):
                 for one, own in each:
-                    one._once(own)
-                settled = [one._has_settled() for one, _ in each]
+                    one.once(own)
+                settled = [one.has_settled() for one, _ in each]
                 w.leave_if(functools.reduce(lambda a, b: w.let(f"and i1 {a}, {b}"), settled))
             for one, own in each:
-                one._end(own)
+                one.end(own)
 
     def _with_own_arrays(self) -> _TangentStages:
         v = self.iteration.v
         delta, moved = v.array(self.size), v.array(self.size)
         return replace(self, delta=delta, moved=moved, change=v.array(1), before=v.array(1), reach=v.array(1))
 
-    def _begin(self) -> None:
+    def begin(self) -> None:
+        """Write the start of the iteration, ΔL = 0."""
         w, v = self.iteration.w, self.iteration.v
         with w.loop(0, self.size) as i:
             v.store(v.constant(Fraction(0)), self.delta, i)
         v.store(v.constant(Fraction(0)), self.change, 0)
 
-    def _end(self, own: str) -> None:
+    def end(self, own: str) -> None:
         """Add the stages to the deviation; NaN where the iteration has not converged."""
         w, v = self.iteration.w, self.iteration.v
         lost = w.let(f"xor i1 {self._is_below(_CONVERGED)}, true")
@@ -168,7 +169,7 @@ class _TangentStages:
             new = w.algebra("add", w.load(own, i), change)
             w.store(w.select(lost, w.nan(), new), own, i)
 
-    def _once(self, own: str) -> None:
+    def once(self, own: str) -> None:
         """Write one iteration, ΔY from ΔL and ΔL from ΔY."""
         w, v, method = self.iteration.w, self.iteration.v, self.iteration.method
         zero = v.constant(Fraction(0))
@@ -220,7 +221,7 @@ class _TangentStages:
         limit = w.algebra("mul", reach, w.constant(part))
         return w.let(f"fcmp ole {w.number.name} {change}, {limit}")
 
-    def _has_settled(self) -> str:
+    def has_settled(self) -> str:
         """Return whether the change is lost in rounding, or small and halved no more."""
         w, v = self.iteration.w, self.iteration.v
         change, before = v.greatest(v.load(self.change, 0)), v.greatest(v.load(self.before, 0))
