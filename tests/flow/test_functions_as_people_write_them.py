@@ -148,6 +148,17 @@ def elementwise(t, y):
     return np.concatenate((y[2:], -stiffening(y[:2])))
 
 
+def masked(t, y):
+    force = -y[:2]
+    force[y[:2] > 0] *= 2
+    return np.concatenate((y[2:], force))
+
+
+@functools.lru_cache
+def stiffness(k):
+    return k + math.sin(k) ** 2
+
+
 def with_memory_of_its_own(k, c=0.1):
     def damping(v):
         return -c * v * np.hypot(v, 0.1)
@@ -205,6 +216,8 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], Any]] = {
     "a table": (lambda t, y: [y[1], np.interp(y[0], [-2, 0, 1, 3], [1, 0, -0.5, -2])], [0.8, 0.0]),
     "SciPy's table": (lambda t, y: [y[1], TABLE(y[0])], [0.8, 0.0]),
     "a spline": (lambda t, y: [y[1], SPLINE(y[0]) + WIND(t)], [0.5, 0.0]),
+    "masks": (masked, [0.4, -0.3, 0.0, 0.1]),
+    "a cache": (lambda t, y: [y[1], -stiffness(3.0) * y[0] + t / 9], [0.4, 0.0]),
     "conditions as numbers": (lambda t, y: [y[1], -y[0] - 0.2 * (y[1] > 0) + 0.2 * (y[1] < 0)], [1.0, 0.3]),
     "roll and diff": (
         lambda t, y: np.hstack([y[3:], np.roll(y[:3], 1) + np.roll(y[:3], -1) - 2 * y[:3] - np.diff(y[:4]) ** 3]),
@@ -239,6 +252,20 @@ def test_modules_of_the_users_are_left_as_they_are() -> None:
     field_of_function(by_math, 2)
     assert globals() == before
     assert math.sin is by_math.__globals__["math"].sin
+
+
+SEEN: list[Any] = []
+
+
+def keeping_what_it_saw(t, y):
+    SEEN.append((t, y[0]))
+    return [y[1], -y[0]]
+
+
+def test_what_is_written_into_the_users_lists_are_numbers() -> None:
+    propagate(keeping_what_it_saw, (0, 1), [1.0, 0.0], samples=1)
+    assert SEEN
+    assert all(isinstance(number, float) for pair in SEEN for number in pair)
 
 
 # -- what is no function of t and y ---------------------------------------------------------------------

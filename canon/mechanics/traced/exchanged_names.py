@@ -79,10 +79,16 @@ class _Exchange:
                 self.done[id(x)] = _of_table(x)
             case _ if isinstance(getattr(x, "py_func", None), types.FunctionType):
                 self.done[id(x)] = self.of(x.py_func)
+            case _ if isinstance(
+                getattr(x, "__wrapped__", None), types.FunctionType
+            ):  # with a cache around it
+                self.done[id(x)] = self.of(x.__wrapped__)
             case _ if isinstance(getattr(x, "pyfunc", None), types.FunctionType):
                 self.done[id(x)] = np.vectorize(self.of(x.pyfunc), otypes=[object])
             case _ if isinstance(x, tuple | list | dict):
                 self._container(cast("Any", x))
+            case _ if isinstance(x, set | np.ndarray):
+                self.done[id(x)] = x.copy()
             case _ if _is_of_user(x):
                 self._object(x)
             case _:
@@ -115,14 +121,17 @@ class _Exchange:
             new.__defaults__ = tuple(map(self.of, f.__defaults__))
 
     def _container(self, x: Any) -> None:
-        values = list(x.values() if isinstance(x, dict) else x)
-        new = [self.of(value) for value in values]
-        if all(a is b for a, b in zip(values, new, strict=True)):
+        """Exchange what a container holds, in a copy: what is written into it should not be the user's."""
+        if isinstance(x, tuple):
+            values = cast("tuple[Any, ...]", x)
+            new = [self.of(value) for value in values]
+            if any(a is not b for a, b in zip(values, new, strict=True)):
+                self.done[id(x)] = type(x)(*new) if hasattr(x, "_fields") else type(x)(new)
             return
-        if isinstance(x, dict):
-            self.done[id(x)] = dict(zip(cast("dict[Any, Any]", x), new, strict=True))
-        else:
-            self.done[id(x)] = type(x)(*new) if hasattr(x, "_fields") else type(x)(new)
+        own: Any = copy.copy(x)
+        self.done[id(x)] = own
+        for key, value in list(own.items() if isinstance(own, dict) else enumerate(own)):
+            own[key] = self.of(value)
 
     def _object(self, x: Any) -> None:
         """Exchange the methods of an object of the user's own class, and the functions it holds, in a copy."""

@@ -41,6 +41,12 @@ class TracedArray(np.ndarray[Any, Any]):
     def __array_function__(self, function: Any, _: Any, args: Any, how: Any) -> Any:
         return by_function(function, args, how)
 
+    def __getitem__(self, key: Any) -> Any:
+        return super().__getitem__(_with_truths(key))
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        super().__setitem__(_with_truths(key), value)
+
     def astype(self, *_: Any, **__: Any) -> Any:
         """Return itself: what moves has no type of numbers."""
         return self.copy()
@@ -54,6 +60,15 @@ class TracedArray(np.ndarray[Any, Any]):
     def imag(self) -> Any:  # pyright: ignore[reportIncompatibleMethodOverride]
         """The imaginary parts."""
         return _each(lambda x: x.imag, 1)(self)
+
+
+def _with_truths(key: Any) -> Any:
+    """Return an index in which conditions are decided, as ``x[x < 0] = 0`` needs it."""
+    if isinstance(key, tuple):
+        return tuple(map(_with_truths, cast("tuple[Any, ...]", key)))
+    if isinstance(key, np.ndarray) and key.dtype == object:
+        return np.array([bool(c) for c in key.flat]).reshape(key.shape)
+    return key
 
 
 def _each(function: Callable[..., Any], n: int) -> Callable[..., Any]:

@@ -84,7 +84,7 @@ def field_of_function(f: Callable[[Any, Any], Any], n: int) -> VectorField:
     exchanged = with_exchanged_names(f)
     try:
         rates = along_all_ways(lambda decisions: _rates(exchanged, variables, decisions))
-    except (TypeError, AttributeError, np.linalg.LinAlgError) as failed:
+    except (TypeError, AttributeError, IndexError, np.linalg.LinAlgError) as failed:
         raise TypeError(f"the function f(t, y) can't be read as formulas ({failed}): {_READABLE}") from failed
     return VectorField(rates, variables)
 
