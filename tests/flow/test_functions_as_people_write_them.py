@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import bisect
+import cmath
 import functools
 import math
 import random
@@ -185,6 +187,74 @@ class Rocket:
         return self(t, y)
 
 
+@dataclass(frozen=True)
+class Spring:
+    k: float
+
+    @classmethod
+    def of(cls, period):
+        return cls(4 * math.pi**2 / period**2)
+
+    @staticmethod
+    def damping(v):
+        return -0.2 * math.tanh(v)
+
+    def __call__(self, t, y):
+        return y[1], -self.k * y[0] + Spring.damping(y[1])
+
+
+def in_two_parts(f):
+    @functools.wraps(f)
+    def of_state(*args):
+        t, y = args
+        n = len(y) // 2
+        return [*y[n:], *f(t, y[:n], y[n:])]
+
+    return of_state
+
+
+@in_two_parts
+def tied(t, q, v):
+    return [-q[0] - 0.3 * (q[0] - q[1]), -q[1] + 0.3 * (q[0] - q[1]) - 0.1 * v[1]]
+
+
+def summed_over_bonds(t, y):
+    u, v = y.reshape(2, 3)
+    a = -0.2 * v
+    i, j = np.array([0, 1, 2]), np.array([1, 2, 0])
+    pull = u[j] - u[i]
+    np.add.at(a, i, pull)
+    np.subtract.at(a, j, pull)
+    return np.concatenate([v, a - u])
+
+
+def by_determinants(t, y):
+    area = np.linalg.det(np.array([[y[0], y[2]], [y[1], y[3]]]))
+    rows = np.apply_along_axis(lambda r: -r * math.dist(r, (0.0, 0.0)), 1, y[:2].reshape(1, 2))
+    return np.hstack([y[2:], rows[0] - 0.1 * area])
+
+
+def by_cmath(t, y):
+    r, angle = cmath.polar(complex(y[0], y[1]))
+    pull = cmath.rect(-r, angle) + 0.3 * cmath.exp(2j * t)
+    return [y[2], y[3], pull.real, pull.imag]
+
+
+STROKES = [0.5, 1.0, 2.0, 40.0]
+
+
+def from_a_list(t, y):
+    push = [0.0, 1.0, -1.0, 0.5][bisect.bisect_right(STROKES, t)]
+    blow, rest = divmod(t, 0.8)
+    return [y[1], -y[0] + push + (-1) ** blow * rest]
+
+
+def nested_guard(t, y):
+    if (depth := -y[0]) > 0 and (force := 300 * depth**1.5 - 2 * y[1]) > 0:
+        return [y[1], force - 1]
+    return [y[1], -1.0]
+
+
 TABLE = interp1d([-2.0, -0.5, 0.5, 2.0], [3.0, 0.5, -0.5, -3.0])
 SPLINE = CubicSpline([-2, -1, 0, 1, 2], [4.0, 1.0, 0.0, -1.0, -4.0])
 WIND = PchipInterpolator([0, 1, 2, 3], [0, 1, -1, 0])
@@ -216,6 +286,13 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], Any]] = {
     "a table": (lambda t, y: [y[1], np.interp(y[0], [-2, 0, 1, 3], [1, 0, -0.5, -2])], [0.8, 0.0]),
     "SciPy's table": (lambda t, y: [y[1], TABLE(y[0])], [0.8, 0.0]),
     "a spline": (lambda t, y: [y[1], SPLINE(y[0]) + WIND(t)], [0.5, 0.0]),
+    "a frozen object with methods of its class": (Spring.of(2.0), [0.5, 0.0]),
+    "a decorator": (tied, [0.5, 0.1, 0.0, 0.2]),
+    "at places": (summed_over_bonds, [0.3, -0.2, 0.1, 0.0, 0.4, 0.0]),
+    "a determinant": (by_determinants, [1.0, 0.2, 0.1, 0.9]),
+    "polar form": (by_cmath, [1.0, 0.0, 0.0, 0.5]),
+    "a list by the time": (from_a_list, [0.2, 0.0]),
+    "a guard in a guard": (nested_guard, [0.2, -0.5]),
     "masks": (masked, [0.4, -0.3, 0.0, 0.1]),
     "a cache": (lambda t, y: [y[1], -stiffness(3.0) * y[0] + t / 9], [0.4, 0.0]),
     "conditions as numbers": (lambda t, y: [y[1], -y[0] - 0.2 * (y[1] > 0) + 0.2 * (y[1] < 0)], [1.0, 0.3]),
@@ -311,6 +388,12 @@ def endless(t, y):
     return [y[1], -e]
 
 
+def unset(t, y):
+    if y[0] < 5 or y[0] > 6:
+        force = -y[0]
+    return [y[1], force]
+
+
 def crashing(t, y):
     if y[0] < 0.5:
         raise RuntimeError("the ground")
@@ -325,6 +408,7 @@ WRONG = {
     truncating: "read as formulas|number of something that moves",
     column: "in a row, .ravel",
     endless: "grow beyond|asks more than",
+    unset: "raises UnboundLocalError where",
     crashing: "raises RuntimeError where y_0 < 1/2: leave that out, and watch it by an event",
     lambda t, y: None: "None is no formula|returns 1 rate",
     lambda t, y: [y[1], -math.sin(y[:2])]: "math.sin of an array",

@@ -6,10 +6,12 @@ the pieces of a ``Piecewise``. So ``if``, ``max``, ``np.where`` and whatever els
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import sympy as sp
 from sympy.core.relational import Relational
+
+from canon.expression.symbols.symbol import time
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -28,9 +30,18 @@ MOST_QUESTIONS = 100
 
 
 class Decisions:
-    """The answers to the questions of one call: those that are given, then yes."""
+    """The answers to the questions of one call: those that are given, then yes.
 
-    def __init__(self, given: Sequence[bool] = ()) -> None:
+    Parameters
+    ----------
+    given
+        The first answers.
+    span
+        Two times between which the others lie, so that what never comes is not asked for.
+    """
+
+    def __init__(self, given: Sequence[bool] = (), span: tuple[float, float] | None = None) -> None:
+        self.span = span
         self.asked: list[tuple[Boolean, bool]] = []
         self._given = given
         self._known: dict[Boolean, bool] = {}
@@ -47,6 +58,10 @@ class Decisions:
             condition = cast("Boolean", condition.canonical)
         if condition in (sp.true, sp.false):
             return bool(condition)
+        if self.span is not None and condition not in self._known and condition.free_symbols == {time}:
+            ends = {_holds_at(condition, t) for t in self.span}
+            if ends in ({True}, {False}):
+                return ends == {True}
         if condition not in self._known:
             i = len(self.asked)
             if i == MOST_QUESTIONS:
@@ -59,7 +74,18 @@ class Decisions:
         return self._known[condition]
 
 
-def along_all_ways(call: Callable[[Decisions], list[Expr]]) -> list[Expr]:
+def _holds_at(condition: Boolean, t: float) -> bool | None:
+    """Tell whether a condition that is monotonous in the time holds at an instant; None of other conditions."""
+    if not isinstance(condition, Relational) or isinstance(condition, sp.Eq | sp.Ne):
+        return None
+    left: Any = condition.lhs
+    gap: Any = left - condition.rhs
+    return bool(condition.subs(time, sp.Rational(t))) if gap.diff(time).is_number else None
+
+
+def along_all_ways(
+    call: Callable[[Decisions], list[Expr]], span: tuple[float, float] | None = None
+) -> list[Expr]:
     """Return what a function returns, in pieces by the questions it asks.
 
     A way that an assertion of the function's own rules out is left out, and one on which it raises an error of its own
@@ -69,6 +95,8 @@ def along_all_ways(call: Callable[[Decisions], list[Expr]]) -> list[Expr]:
     ----------
     call
         Calls the function, which asks the decisions it is given.
+    span
+        When it is called.
 
     Raises
     ------
@@ -88,7 +116,7 @@ def along_all_ways(call: Callable[[Decisions], list[Expr]]) -> list[Expr]:
         count += 1
         if count > MOST_WAYS:
             raise TypeError(f"there are more than {MOST_WAYS} ways through it, by signs of what moves")
-        decisions = Decisions(given)
+        decisions = Decisions(given, span)
         found = _gone(call, decisions)
         for i in reversed(range(len(given), len(decisions.asked))):
             before = [answer for _, answer in decisions.asked[:i]]
@@ -107,7 +135,7 @@ def _gone(call: Callable[[Decisions], list[Expr]], decisions: Decisions) -> list
         return call(decisions)
     except AssertionError:
         return None
-    except (ArithmeticError, RuntimeError, LookupError, ValueError) as raised:
+    except (ArithmeticError, RuntimeError, LookupError, NameError, ValueError) as raised:
         held = [condition if answer else sp.Not(condition) for condition, answer in decisions.asked]
         if any(isinstance(condition, sp.Eq) for condition in held):
             return None

@@ -7,10 +7,12 @@ its module or of the functions around it is exchanged in a copy of it; the modul
 from __future__ import annotations
 
 import builtins
+import cmath
 import copy
 import dis
 import functools
 import math
+import sys
 import types
 from typing import TYPE_CHECKING, Any, cast
 
@@ -89,6 +91,8 @@ class _Exchange:
                 self._container(cast("Any", x))
             case _ if isinstance(x, set | np.ndarray):
                 self.done[id(x)] = x.copy()
+            case type() if _is_module_of_user(x.__module__):
+                self._class(x)
             case _ if _is_of_user(x):
                 self._object(x)
             case _:
@@ -135,32 +139,41 @@ class _Exchange:
 
     def _object(self, x: Any) -> None:
         """Exchange the methods of an object of the user's own class, and the functions it holds, in a copy."""
-        kind = type(x)
+        try:
+            new = copy.copy(x)
+            self.done[id(x)] = new
+            object.__setattr__(new, "__class__", self._with_own_methods(type(x)))
+            for name, value in list(vars(new).items()):
+                object.__setattr__(new, name, self.of(value))
+        except TypeError:  # such an object can't be copied or has a layout of its own
+            self.done[id(x)] = x
+
+    def _class(self, kind: type) -> None:
+        """Exchange the methods of a class of the user's own, in a class below it."""
+        try:
+            self.done[id(kind)] = self._with_own_methods(kind)
+        except (TypeError, ValueError):  # nothing may stand below it, as below an enumeration
+            self.done[id(kind)] = kind
+
+    def _with_own_methods(self, kind: type) -> type:
         own = {
             name: value
             for base in reversed(kind.__mro__)
             if base is not object
             for name, value in vars(base).items()
         }
-        try:
-            new = copy.copy(x)
-            methods: dict[str, Any] = {}
-            self.done[id(x)] = new
-            for name, value in own.items():
-                match value:
-                    case types.FunctionType():
-                        methods[name] = self.of(value)
-                    case staticmethod() | classmethod():
-                        methods[name] = type(value)(self.of(cast("Any", value).__func__))
-                    case property() if value.fget is not None:
-                        methods[name] = property(self.of(value.fget), value.fset)
-                    case _:
-                        pass
-            new.__class__ = type(kind.__name__, (kind,), methods)
-            for name, value in list(vars(new).items()):
-                object.__setattr__(new, name, self.of(value))
-        except TypeError:  # such an object can't be copied or has a layout of its own
-            self.done[id(x)] = x
+        methods: dict[str, Any] = {}
+        for name, value in own.items():
+            match value:
+                case types.FunctionType():
+                    methods[name] = self.of(value)
+                case staticmethod() | classmethod():
+                    methods[name] = type(value)(self.of(cast("Any", value).__func__))
+                case property() if value.fget is not None:
+                    methods[name] = property(self.of(value.fget), value.fset)
+                case _:
+                    pass
+        return type(kind.__name__, (kind,), methods)
 
 
 def _names(code: types.CodeType) -> Iterator[str]:
@@ -207,15 +220,11 @@ def _is_of_user(x: Any) -> bool:
     kind = type(x)
     if isinstance(x, type | types.ModuleType | np.ndarray) or not hasattr(x, "__dict__"):
         return False
-    return kind.__module__.partition(".")[0] not in (
-        "builtins",
-        "numpy",
-        "scipy",
-        "sympy",
-        "canon",
-        "types",
-        "functools",
-    )
+    return _is_module_of_user(kind.__module__)
+
+
+def _is_module_of_user(name: str) -> bool:
+    return name.partition(".")[0] not in (*sys.stdlib_module_names, "numpy", "scipy", "sympy", "canon")
 
 
 def _is_spline(x: Any) -> bool:
@@ -243,6 +252,8 @@ def _known(x: Any) -> Any:
         return _LINEAR
     if x is math:
         return _MATH
+    if x is cmath:
+        return _CMATH
     if getattr(x, "__name__", None) == "scipy.linalg":
         return _LINEAR
     try:
@@ -323,8 +334,12 @@ _OWN: dict[str, Any] = {
         for name in ("concatenate", "hstack", "vstack", "stack", "column_stack", "append")
     },
     **{name: _by(getattr(np, name)) for name in ("where", "clip", "select", "piecewise", "interp", "sinc")},
+    "apply_along_axis": _by(np.apply_along_axis),
 }  # fmt: skip
-_LINEAR = _Module(np.linalg, {"solve": _solve, "inv": _by(np.linalg.inv), "norm": _by(np.linalg.norm)})
+_LINEAR = _Module(
+    np.linalg,
+    {"solve": _solve, "inv": _by(np.linalg.inv), "norm": _by(np.linalg.norm), "det": _by(np.linalg.det)},
+)
 _NUMPY = _Module(np, {**_OWN, "linalg": _LINEAR})
 
 # -- Python --------------------------------------------------------------------------------------------
@@ -356,7 +371,16 @@ def _extreme(name: str) -> Callable[..., Any]:
     return of
 
 
-_OF_PYTHON: dict[str, Any] = {"float": _Float, "max": _extreme("max"), "min": _extreme("min")}
+def _complex(re: Any = 0, im: Any = 0) -> Any:
+    return re + 1j * im if is_traced(re) or is_traced(im) else complex(re, im)
+
+
+_OF_PYTHON: dict[str, Any] = {
+    "float": _Float,
+    "complex": _complex,
+    "max": _extreme("max"),
+    "min": _extreme("min"),
+}
 
 _NAMES_IN_MATH = {
     **{name: name for name in (
@@ -386,14 +410,47 @@ def _logarithm(x: Any, *base: Any) -> Any:
     return found / OF_NUMBERS["log"](base[0]) if base else found
 
 
+def _sum(numbers: Any) -> Any:
+    numbers = list(numbers)
+    return sum(numbers) if any(map(is_traced, numbers)) else math.fsum(numbers)
+
+
+def _distance(p: Any, q: Any) -> Any:
+    if not any(map(is_traced, (*p, *q))):
+        return math.dist(p, q)
+    return OF_NUMBERS["sqrt"](sum((a - b) ** 2 for a, b in zip(p, q, strict=True)))
+
+
 _IN_MATH: dict[str, Any] = {
     own: _of_math(getattr(math, own), name) for own, name in _NAMES_IN_MATH.items() if hasattr(math, own)
-} | {"log": _logarithm}
+} | {"log": _logarithm, "fsum": _sum, "dist": _distance}
+
+
+def _phase(z: Any) -> Any:
+    return OF_NUMBERS["arctan2"](z.imag, z.real) if is_traced(z) else cmath.phase(z)
+
+
+def _polar(z: Any) -> Any:
+    return (abs(z), _phase(z)) if is_traced(z) else cmath.polar(z)
+
+
+def _rect(r: Any, angle: Any) -> Any:
+    if not (is_traced(r) or is_traced(angle)):
+        return cmath.rect(r, angle)
+    return r * (OF_NUMBERS["cos"](angle) + 1j * OF_NUMBERS["sin"](angle))
+
+
+_CMATH = _Module(
+    cmath,
+    {"exp": _of_math(cmath.exp, "exp"), "phase": _phase, "polar": _polar, "rect": _rect},
+)
 _MATH = _Module(math, _IN_MATH)
 
 _STANDING_IN: dict[Any, Any] = {
     **{getattr(np, name): own for name, own in _OWN.items()},
     **{getattr(math, name): own for name, own in _IN_MATH.items()},
     np.linalg.solve: _solve, np.linalg.inv: _by(np.linalg.inv), np.linalg.norm: _by(np.linalg.norm),
-    builtins.float: _Float, builtins.max: _OF_PYTHON["max"], builtins.min: _OF_PYTHON["min"],
+    np.linalg.det: _by(np.linalg.det),
+    builtins.float: _Float, builtins.complex: _complex,
+    builtins.max: _OF_PYTHON["max"], builtins.min: _OF_PYTHON["min"],
 }  # fmt: skip

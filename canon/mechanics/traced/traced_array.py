@@ -107,6 +107,8 @@ def by_ufunc(ufunc: Any, method: str, inputs: Sequence[Any], how: Mapping[str, A
     of_objects = name in _OF_MATRICES or set("".join(ufunc.types)) <= set("O->")  # from Python
     if name not in OF_NUMBERS and not of_objects:
         raise TypeError(f"{name} of something that moves")
+    if method == "at":
+        return _at_places(ufunc, *inputs)
     acting = ufunc if of_objects else np.frompyfunc(OF_NUMBERS[name], ufunc.nin, 1)
     arrays = [
         np.asarray(_plain(x), dtype=object) for x in inputs[: None if method in ("__call__", "outer") else 1]
@@ -118,6 +120,14 @@ def by_ufunc(ufunc: Any, method: str, inputs: Sequence[Any], how: Mapping[str, A
         out[...] = found
         return out
     return _shown(found)
+
+
+def _at_places(ufunc: Any, array: Any, places: Any, *values: Any) -> None:
+    """Apply a function to some elements of an array, as often as each is named."""
+    shape = np.shape(_plain(array)[places])
+    operands = [np.broadcast_to(np.asarray(_plain(v), dtype=object), shape) for v in values]
+    for k, place in enumerate(places):
+        array[place] = by_ufunc(ufunc, "__call__", (array[place], *(v[k] for v in operands)), {})
 
 
 def by_function(function: Any, args: Sequence[Any], how: Mapping[str, Any]) -> Any:
@@ -274,6 +284,25 @@ def _inverse(matrix: Any) -> Any:
     return solved(matrix, np.eye(len(matrix)))
 
 
+def _determinant(matrix: Any) -> Any:
+    rows = np.asarray(_plain(matrix), dtype=object)
+    n = len(rows)
+    if n > MOST_EQUATIONS // 2:
+        raise TypeError(f"the determinant of {n} rows of something that moves")
+    if n == 1:
+        return rows[0, 0]
+    minors = (_determinant(np.delete(rows[1:], j, axis=1)) for j in range(n))
+    return sum((-1) ** j * x * minor for j, (x, minor) in enumerate(zip(rows[0], minors, strict=True)))
+
+
+def _along_axis(function: Callable[..., Any], axis: int, array: Any, *args: Any, **how: Any) -> Any:
+    rows = np.moveaxis(np.asarray(_plain(array), dtype=object), axis, -1)
+    found = [function(row.view(TracedArray), *args, **how) for row in rows.reshape(-1, rows.shape[-1])]
+    whole = np.array(found, dtype=object)
+    whole = whole.reshape(*rows.shape[:-1], *whole.shape[1:])
+    return _shown(whole if whole.ndim < rows.ndim else np.moveaxis(whole, -1, axis))
+
+
 def _norm(x: Any, ord: Any = None, axis: Any = None, keepdims: bool = False) -> Any:  # noqa: A002
     if ord not in (None, 2, "fro") or (ord == 2 and axis is None and np.ndim(x) != 1):
         raise TypeError(f"a norm of order {ord} of something that moves")
@@ -295,6 +324,7 @@ def _sinc(x: Any) -> Any:
 _OF_ARRAYS: dict[Any, Callable[..., Any]] = {
     np.where: _where, np.clip: _clip, np.select: _select, np.piecewise: _pieces, np.interp: interpolated,
     np.linalg.solve: solved, np.linalg.inv: _inverse, np.linalg.norm: _norm, np.sinc: _sinc,
+    np.linalg.det: _determinant, np.apply_along_axis: _along_axis,
     np.nan_to_num: lambda x, *_, **__: x, np.isreal: lambda x: _filled(x, value=True),
     np.zeros_like: lambda x, *_, **__: _filled(x, 0), np.empty_like: lambda x, *_, **__: _filled(x, 0),
     np.ones_like: lambda x, *_, **__: _filled(x, 1), np.full_like: lambda x, value, *_, **__: _filled(x, value),

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 import sympy as sp
 
+from canon.expression.graph.piecewise_form import without_pieces
 from canon.expression.symbols.symbol import time
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.hamilton.vector_field import VectorField
@@ -79,11 +80,15 @@ def field_of_function(f: Callable[[Any, Any], Any], n: int) -> VectorField:
     >>> field_of_function(with_dry_friction, 2).components[1]
     Piecewise((-y_0 - 1/2, y_1 > 0), (1/2 - y_0, True))
     """
+    return _field(f, n, None)
+
+
+def _field(f: Callable[[Any, Any], Any], n: int, span: tuple[float, float] | None) -> VectorField:
     _refuse_other_arguments(f)
     variables = sp.symbols(f"y_:{n}", real=True, seq=True)
     exchanged = with_exchanged_names(f)
     try:
-        rates = along_all_ways(lambda decisions: _rates(exchanged, variables, decisions))
+        rates = along_all_ways(lambda decisions: _rates(exchanged, variables, decisions), span)
     except (TypeError, AttributeError, IndexError, np.linalg.LinAlgError) as failed:
         raise TypeError(f"the function f(t, y) can't be read as formulas ({failed}): {_READABLE}") from failed
     return VectorField(rates, variables)
@@ -133,7 +138,7 @@ def read_at_start(f: Callable[[Any, Any], Any], span: tuple[float, float], y0: A
         raise ValueError(
             f"y0 = {y0} is one number: give the start as a list, y0 = [{y0}], and f returns as many"
         )
-    field = _over(field_of_function(f, len(numbers)), span)
+    field = _over(_field(f, len(numbers), span), span)
     t0 = span[0]
     start = numbers.reshape(len(numbers), -1)[:, 0]
     returned = _returned(f, t0, start)
@@ -142,7 +147,7 @@ def read_at_start(f: Callable[[Any, Any], Any], span: tuple[float, float], y0: A
             "f(t, y) returns other rates when it is called again with the same t and y: no equations do"
         )
     told = _told(field, t0, start)
-    if not _agree(told, returned, _NEAR):
+    if not _agree(told, returned, _NEAR, _size(field, t0, start)):
         raise TypeError(
             f"at the start f(t, y) returns {returned.tolist()}, read as formulas {told}: {_READABLE}"
         )
@@ -182,19 +187,32 @@ def _returned(f: Callable[[Any, Any], Any], t: float, y: Array) -> Array:
 
 
 def _told(field: VectorField, t: float, y: Array) -> list[float]:
-    point = dict(zip((*field.x, time), map(sp.Float, (*y, t)), strict=True))
-    return [_value(cast("sp.Expr", rate.xreplace(point))) for rate in field.components]
+    return _values(field.components, _point(field, t, y))
 
 
-def _agree(told: list[float], returned: Array, near: float) -> bool:
-    size = np.abs(returned[np.isfinite(returned)]).max(initial=0.0)
+def _size(field: VectorField, t: float, y: Array) -> float:
+    """Return the largest term of the rates at a place, of which they may be small differences."""
+    terms = [term for rate in field.components for term in sp.Add.make_args(rate)]
+    return float(np.nanmax(np.abs(_values(terms, _point(field, t, y))), initial=0.0))
+
+
+def _point(field: VectorField, t: float, y: Array) -> dict[sp.Symbol, sp.Expr]:
+    return dict(zip((*field.x, time), map(sp.Float, (*y, t)), strict=True))
+
+
+def _values(formulas: Sequence[sp.Expr], point: dict[sp.Symbol, sp.Expr]) -> list[float]:
+    return [_value(formula, point) for formula in formulas]
+
+
+def _agree(told: list[float], returned: Array, near: float, size: float = 0.0) -> bool:
+    size = max(size, np.abs(returned[np.isfinite(returned)]).max(initial=0.0))
     return np.allclose(told, returned, rtol=near, atol=near * size, equal_nan=True)
 
 
 def _refuse_other_arguments(f: Callable[..., Any]) -> None:
     """Refuse a function of other arguments than f(t, y), as far as it says which it takes."""
     try:
-        taken = inspect.signature(f).parameters.values()
+        taken = inspect.signature(f, follow_wrapped=False).parameters.values()
     except (TypeError, ValueError):  # a function of C says nothing
         return
     positional = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
@@ -223,7 +241,11 @@ def _real_numbers(given: Any, what: str) -> Array:
         raise TypeError(f"{what} should be real numbers, not {given!r}") from strange
 
 
-def _value(formula: sp.Expr) -> float:
+def _value(formula: sp.Expr, point: dict[sp.Symbol, sp.Expr]) -> float:
     """Return the value of a formula, nan where that is no finite real number, as NumPy's functions have it."""
-    value = sp.N(formula)
+    numbers = cast("dict[sp.Basic, sp.Basic]", point)
+    try:
+        value = sp.N(cast("sp.Expr", formula.xreplace(numbers)))
+    except TypeError:  # a piece that is not meant there compares what is not real
+        value = sp.N(cast("sp.Expr", without_pieces(formula).xreplace(numbers)))
     return float(value) if value.is_real else math.nan

@@ -114,6 +114,10 @@ class TracedNumber:
         """The imaginary part."""
         return TracedNumber(real_and_imaginary(self.formula)[1], self.decisions)
 
+    def __divmod__(self, other: Any) -> Any:
+        whole = OF_NUMBERS["floor_divide"](self, other)
+        return whole, self - whole * other
+
     def item(self) -> TracedNumber:
         """Return itself, as NumPy's numbers do."""
         return self
