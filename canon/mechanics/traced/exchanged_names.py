@@ -10,6 +10,7 @@ import builtins
 import cmath
 import copy
 import dis
+import enum
 import functools
 import math
 import sys
@@ -91,6 +92,8 @@ class _Exchange:
                 self._container(cast("Any", x))
             case _ if isinstance(x, set | np.ndarray):
                 self.done[id(x)] = x.copy()
+            case enum.Enum() | enum.EnumMeta():
+                pass
             case type() if _is_module_of_user(x.__module__):
                 self._class(x)
             case _ if _is_of_user(x):
@@ -152,7 +155,7 @@ class _Exchange:
         """Exchange the methods of a class of the user's own, in a class below it."""
         try:
             self.done[id(kind)] = self._with_own_methods(kind)
-        except (TypeError, ValueError):  # nothing may stand below it, as below an enumeration
+        except (TypeError, ValueError):  # nothing may stand below it
             self.done[id(kind)] = kind
 
     def _with_own_methods(self, kind: type) -> type:
