@@ -42,7 +42,7 @@ def starts_of(problem: Problem, orbits: int) -> Array:
     if problem.scene == "kepler":
         e = drawn.uniform(0, 0.6, orbits)
         return np.array([1 - e, 0 * e, 0 * e, np.sqrt(problem.values["mu"] * (1 + e) / (1 - e))])
-    y, p = drawn.uniform(-0.3, 0.4, orbits), drawn.uniform(-0.25, 0.25, orbits)
+    y, p = drawn.uniform(-0.25, 0.3, orbits), drawn.uniform(-0.2, 0.2, orbits)
     return np.array([0 * y, y, np.sqrt(1 / 6 - p**2 - y**2 + 2 * y**3 / 3), p])
 
 
