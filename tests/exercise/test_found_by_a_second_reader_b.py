@@ -1,0 +1,84 @@
+"""Claims by which a second reader of the code had wrong verdicts, with wrong twins: forces that hold accelerations,
+systems of first order, powers, parameters, starts and implicit maps."""
+
+import pytest
+
+from canon.exercise.claim_verdict import InvalidClaim, judge
+from canon.exercise.sheet.sheet import Claim
+
+BUDGET = 60.0
+"""Seconds for a claim: that a busy machine is slow is no question here."""
+
+
+def verdict_on(kind, **keys):
+    return judge(Claim("a", kind, keys, budget=BUDGET))
+
+
+def said(kind, **keys):
+    """Return the verdict on a claim as a word; invalid where nothing can be judged."""
+    try:
+        return verdict_on(kind, **keys).status.value
+    except InvalidClaim:
+        return "invalid"
+
+
+ADDED_MASS = {
+    "q": ["x"], "parameters": {"m": "positive", "k": "positive", "mu": "positive"},
+    "L": "m*x_dot**2/2 - k*x**2/2", "Qnc": ["-mu*x_ddot"],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("answer", "due"),
+    [
+        ({"conserved": ["(m + mu)*x_dot**2/2 + k*x**2/2"]}, "holds"),
+        ({"conserved": ["(m - mu)*x_dot**2/2 + k*x**2/2"]}, "fails"),
+        ({"conserved": ["m*x_dot**2/2 + k*x**2/2"]}, "fails"),
+        ({"not_conserved": ["m*x_dot**2/2 + k*x**2/2"]}, "holds"),
+        ({"not_conserved": ["(m + mu)*x_dot**2/2 + k*x**2/2"]}, "fails"),
+    ],
+)
+def test_what_a_body_with_added_mass_conserves(answer, due):
+    assert said("conserved-or-not", **ADDED_MASS, **answer) == due
+
+
+@pytest.mark.parametrize(
+    ("rate", "due"),
+    [
+        ("-mu*x_dot*x_ddot", "holds"),
+        ("mu*x_dot*x_ddot", "fails"),
+        ("mu*k*x*x_dot/(m + mu)", "holds"),
+        ("mu*k*x*x_dot/m", "fails"),
+        ("0", "fails"),
+    ],
+)
+def test_forces_that_hold_accelerations_have_their_power_on_the_motion(rate, due):
+    assert said("dissipative", **ADDED_MASS, energy_rate=rate) == due
+
+
+def test_forces_not_affine_in_the_accelerations_are_left_open():
+    keys = {"q": ["x"], "L": "x_dot**2/2", "Qnc": ["-x_ddot**2"]}
+    assert said("dissipative", **keys, energy_rate="-x_dot*x_ddot**2") == "holds"
+    assert said("dissipative", **keys, energy_rate="-x_dot*x_ddot") == "undecided"
+
+
+MAXWELL = {
+    "q": ["x", "y"], "parameters": {"m": "positive", "k": "positive", "c": "positive"},
+    "L": "m*x_dot**2/2 - k*(x - y)**2/2", "F": "c*y_dot**2/2",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("rate", "due"),
+    [
+        ("-c*y_dot**2", "holds"),
+        ("-k*(x - y)*y_dot", "holds"),
+        ("-k**2*(x - y)**2/c", "holds"),
+        ("c*y_dot**2", "fails"),
+        ("-k*(x + y)*y_dot", "fails"),
+        ("k**2*(x - y)**2/c", "fails"),
+        ("-2*k**2*(x - y)**2/c", "fails"),
+    ],
+)
+def test_a_coordinate_without_mass_has_the_velocity_of_its_damper(rate, due):
+    assert said("dissipative", **MAXWELL, energy_rate=rate) == due
