@@ -82,3 +82,47 @@ MAXWELL = {
 )
 def test_a_coordinate_without_mass_has_the_velocity_of_its_damper(rate, due):
     assert said("dissipative", **MAXWELL, energy_rate=rate) == due
+
+
+PHASE_SPACE = {"q": ["x", "u"], "L": "u*x_dot - u**2/2 - x**2/2"}
+VORTICES = {
+    "q": ["x1", "y1", "x2", "y2"], "parameters": {"G": "positive", "K": "positive"},
+    "L": "G*x1*y1_dot + K*x2*y2_dot + G*K*log((x1 - x2)**2 + (y1 - y2)**2)",
+}  # fmt: skip
+COUPLED = {
+    "q": ["x", "y", "u", "v"],
+    "L": "u*x_dot + v*y_dot - (u**2 + v**2)/2 - (x**2 + y**2)/2 - x**2*y",
+}
+
+
+@pytest.mark.parametrize(
+    ("system", "I", "due"),
+    [
+        (PHASE_SPACE, "u**2 + x**2", "holds"),
+        (PHASE_SPACE, "u**2 - x**2", "fails"),
+        (PHASE_SPACE, "x_dot**2 + x**2", "holds"),
+        (PHASE_SPACE, "x_dot**2 - x**2", "fails"),
+        (PHASE_SPACE, "u*cos(t) + x*sin(t)", "holds"),
+        (PHASE_SPACE, "u*cos(t) - x*sin(t)", "fails"),
+        (VORTICES, "(x1 - x2)**2 + (y1 - y2)**2", "holds"),
+        (VORTICES, "(x1 - x2)**2 - (y1 - y2)**2", "fails"),
+        (VORTICES, "G*x1 + K*x2", "holds"),
+        (VORTICES, "K*x1 + G*x2", "fails"),
+        ({"q": ["x", "y"], "L": "x_dot**2/2"}, "x_dot", "holds"),
+        ({"q": ["x", "y"], "L": "x_dot**2/2"}, "y_dot", "fails"),
+        ({**PHASE_SPACE, "L": "u*x_dot - H(x, u)", "functions": {"H": ["x", "u"]}}, "H(x, u)", "holds"),
+        ({**PHASE_SPACE, "L": "u*x_dot - H(x, u)", "functions": {"H": ["x", "u"]}}, "H(x, u)*u", "fails"),
+        ({**COUPLED, "restrict": ["x", "u"]}, "v**2 + y**2", "holds"),
+        ({**COUPLED, "restrict": ["x", "u"]}, "v**2 - y**2", "fails"),
+        (COUPLED, "v**2 + y**2", "fails"),
+    ],
+)
+def test_constants_where_the_equations_bind_the_velocities(system, I, due):
+    assert said("constant-of-motion", **system, I=I) == due
+
+
+@pytest.mark.parametrize("I", ["x_dot - u", "3", "(x_dot - u)*x + 1"])
+def test_a_number_on_every_motion_is_no_constant_of_it(I):
+    found = verdict_on("constant-of-motion", **PHASE_SPACE, I=I)
+    assert found.fails
+    assert "says nothing" in found.feedback
