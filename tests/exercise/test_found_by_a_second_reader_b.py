@@ -126,3 +126,29 @@ def test_a_number_on_every_motion_is_no_constant_of_it(I):
     found = verdict_on("constant-of-motion", **PHASE_SPACE, I=I)
     assert found.fails
     assert "says nothing" in found.feedback
+
+
+@pytest.mark.parametrize(
+    ("power", "Q", "due"),
+    [
+        ("P0", "P0/x_dot", "holds"),
+        ("P0", "0", "fails"),
+        ("P0 - k*x_dot", "P0/x_dot - k", "holds"),
+        ("P0 - k*x_dot", "-k", "fails"),
+        ("P0 - k*x_dot**2", "P0/x_dot - k*x_dot", "holds"),
+        ("P0 - k*x_dot**2", "-k*x_dot", "fails"),
+        ("-k*x_dot", "-k", "holds"),
+        ("-k*x_dot", "k", "fails"),
+        ("-k*x_dot + P0*(sin(x)**2 + cos(x)**2 - 1)", "-k", "holds"),
+    ],
+)
+def test_power_at_rest_is_part_of_the_force(power, Q, due):
+    keys = {"q": ["x"], "parameters": {"P0": "positive", "k": "positive"}}
+    assert said("generalized-force", **keys, power=power, Q=[Q]) == due
+
+
+def test_power_at_rest_determines_no_forces_of_several_coordinates():
+    keys = {"q": ["x", "y"], "parameters": {"P0": "positive"}}
+    assert said("generalized-force", **keys, power="P0", Q=["0", "0"]) == "invalid"
+    assert said("generalized-force", **keys, power="P0*x_dot", Q=["P0", "0"]) == "holds"
+    assert said("generalized-force", **keys, power="P0*x_dot", Q=["0", "P0"]) == "fails"
