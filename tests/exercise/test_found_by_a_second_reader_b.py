@@ -152,3 +152,37 @@ def test_power_at_rest_determines_no_forces_of_several_coordinates():
     assert said("generalized-force", **keys, power="P0", Q=["0", "0"]) == "invalid"
     assert said("generalized-force", **keys, power="P0*x_dot", Q=["P0", "0"]) == "holds"
     assert said("generalized-force", **keys, power="P0*x_dot", Q=["0", "P0"]) == "fails"
+
+
+PHASE = {"q": ["q"], "p": ["p"], "find": ["a"]}
+
+
+@pytest.mark.parametrize(
+    ("claim", "values", "assumed", "due"),
+    [
+        ({"of": "constant-of-motion", "H": "p**2/2 + q**2/2", "I": "a*(p**2 + q**2)"}, {}, "real", "fails"),
+        ({"of": "constant-of-motion", "H": "p**2/2 + q**2/2", "I": "a*(p**2 + q**2)"}, {}, "nonzero", "holds"),
+        ({"of": "constant-of-motion", "H": "p**2/2 + q**2/2", "I": "a + p**2 + q**2"}, {}, "real", "holds"),
+        ({"of": "constant-of-motion", "H": "p**2/2 + q**2/2", "I": "(a - 1)*p**2 - q**2"}, {}, "real", "fails"),
+        ({"of": "constant-of-motion", "H": "p**2/2", "I": "(a**2 + 1)*p"}, {}, "real", "holds"),
+        ({"of": "constant-of-motion", "H": "p**2/2", "I": "(a**2 - 1)*p"}, {}, "real", "fails"),
+        ({"of": "constant-of-motion", "H": "p**2/2", "I": "(a - 1)*p", "domain": ["a > 2"]}, {}, "real", "holds"),
+        ({"of": "constant-of-motion", "H": "p**2/2", "I": "(a - 3)*p", "domain": ["a > 2"]}, {}, "real", "fails"),
+        ({"of": "canonicity", "Q": ["a*q"], "P": ["p"], "valence": "a"}, {}, "real", "fails"),
+        ({"of": "canonicity", "Q": ["a*q"], "P": ["p"], "valence": "a"}, {}, "nonzero", "holds"),
+        ({"of": "canonicity", "Q": ["a*q"], "P": ["p"], "valence": "2*a"}, {}, "nonzero", "fails"),
+        ({"of": "canonicity", "Q": ["a*q"], "P": ["p"], "valence": "2"}, {"a": "2"}, "real", "holds"),
+        ({"of": "constant-of-motion", "H": "p**2/2", "I": "p + (a - 2)**2/(a - 2)*q"}, {"a": "2"}, "real", "fails"),
+        ({"of": "constant-of-motion", "H": "p**2/2", "I": "p + (a - 2)*q"}, {"a": "2"}, "real", "holds"),
+        ({"of": "constant-of-motion", "H": "p**2/2", "I": "p + (a - 2)*q"}, {"a": "3"}, "real", "fails"),
+    ],
+)  # fmt: skip
+def test_every_value_of_a_parameter_that_is_claimed_does(claim, values, assumed, due):
+    assert said("parameters", **PHASE, **claim, values=[values], parameters={"a": assumed}) == due
+
+
+@pytest.mark.parametrize(("I", "exception"), [("a*p", "a = 0"), ("(a - 2)*p", "a = 2")])
+def test_the_value_that_is_no_solution_is_named(I, exception):
+    keys = {**PHASE, "of": "constant-of-motion", "H": "p**2/2", "parameters": {"a": "real"}}
+    found = verdict_on("parameters", **keys, I=I, values=[{}])
+    assert exception in found.feedback
