@@ -186,3 +186,32 @@ def test_the_value_that_is_no_solution_is_named(I, exception):
     keys = {**PHASE, "of": "constant-of-motion", "H": "p**2/2", "parameters": {"a": "real"}}
     found = verdict_on("parameters", **keys, I=I, values=[{}])
     assert exception in found.feedback
+
+
+SPRING = {"q": ["x"], "L": "x_dot**2/2 - x**2/2"}
+REPELLED = {"q": ["x"], "parameters": {"x": "nonzero"}, "L": "x_dot**2/2 - 1/(2*x**2)"}
+
+
+@pytest.mark.parametrize(
+    ("system", "rate", "initial", "due"),
+    [
+        (SPRING, "sqrt(1 - x**2)", {"x": "1/2"}, "holds"),
+        (SPRING, "sqrt(1 - x**2)", {"x": "1"}, "holds"),
+        (SPRING, "sqrt(1 - x**2)", {"x": "2"}, "fails"),
+        (SPRING, "sqrt(1 - x**2)", {"x": "2", "x_dot": "I*sqrt(3)"}, "fails"),
+        (SPRING, "sqrt(1 - x**2)", {"x": "3/5", "x_dot": "4/5"}, "holds"),
+        (SPRING, "sqrt(1 - x**2)", {"x": "3/5", "x_dot": "-4/5"}, "fails"),
+        (REPELLED, "sqrt(1 - 1/x**2)", {"x": "2"}, "holds"),
+        (REPELLED, "sqrt(1 - 1/x**2)", {"x": "1/2"}, "fails"),
+        ({"q": ["x"], "equations": ["x*x_ddot + x_dot**2 = 0"]}, "1/x", {"x": "2"}, "holds"),
+        ({"q": ["x"], "equations": ["x*x_ddot + x_dot**2 = 0"]}, "1/x", {"x": "0"}, "fails"),
+    ],
+)
+def test_motions_start_with_real_velocities(system, rate, initial, due):
+    assert said("solution", **system, rates={"x": rate}, initial=initial) == due
+
+
+@pytest.mark.parametrize(("start", "due"), [("a", "holds"), ("1 + a", "fails"), ("1/(1 + a)", "holds")])
+def test_starts_in_letters_are_real_for_some_values(start, due):
+    keys = {**SPRING, "parameters": {"a": "positive"}, "rates": {"x": "sqrt(1 - x**2)"}}
+    assert said("solution", **keys, initial={"x": start}) == due
