@@ -215,3 +215,45 @@ def test_motions_start_with_real_velocities(system, rate, initial, due):
 def test_starts_in_letters_are_real_for_some_values(start, due):
     keys = {**SPRING, "parameters": {"a": "positive"}, "rates": {"x": "sqrt(1 - x**2)"}}
     assert said("solution", **keys, initial={"x": start}) == due
+
+
+IMPLICIT = {
+    "q": ["q"], "p": ["p"], "new_q": ["Q"], "new_p": ["P"],
+    "parameters": {"h": "positive", "g": "positive"}, "box": {"h": [0, 0.1]},
+}  # fmt: skip
+MEAN = "Q - q - h*(P + p)/2"
+
+
+@pytest.mark.parametrize(
+    ("equations", "due"),
+    [
+        ([MEAN, "P**2/2 + g*Q = p**2/2 + g*q"], "holds"),
+        ([MEAN, "P**2/2 + 2*g*Q = p**2/2 + 2*g*q + h*p**2"], "fails"),
+        (["Q - q - h*P", "P**2/2 + g*Q = p**2/2 + g*q"], "fails"),
+        ([MEAN, "P**2 + g**2*Q**2 = p**2 + g**2*q**2"], "holds"),
+        ([MEAN, "P**2 + g**2*Q**2 = p**2 + q**2"], "fails"),
+        (["Q**3 = q**3", "P*Q**2 = p*q**2"], "holds"),
+        (["Q**3 = q**3", "P*Q**2 = 2*p*q**2"], "fails"),
+        (["Q**3 = 8*q**3", "2*P*Q**2 = 4*p*q**2"], "holds"),
+        (["Q**3 = 8*q**3", "P*Q**2 = 4*p*q**2"], "fails"),
+        (["Q = q", "(P - p - h*q)*(P + 2*p) = 0"], "holds"),
+        (["Q = q", "(P - p - h*p)*(P - p + 1) = 0"], "fails"),
+    ],
+)
+def test_of_several_solutions_the_map_near_the_identity_is_meant(equations, due):
+    assert said("canonicity", **IMPLICIT, implicit=equations) == due
+
+
+@pytest.mark.parametrize(
+    ("equations", "due"),
+    [
+        ([MEAN, "P**2/2 + g*Q = p**2/2 + g*q"], "undecided"),
+        (["(Q + q)*(Q + 2*q) = 0", "P = -p"], "undecided"),
+        (["(Q + q)*(Q - q + 1) = 0", "P*Q = p*q"], "undecided"),
+        (["(Q + 3*q)*(Q + 2*q) = 0", "P = -p"], "fails"),
+        (["Q**2 = 4*q**2", "P*Q = p*q"], "holds"),
+    ],
+)
+def test_where_no_solution_is_seen_to_be_near_the_identity_all_of_them_count(equations, due):
+    without = {key: value for key, value in IMPLICIT.items() if key != "box"}
+    assert said("canonicity", **without, implicit=equations) == due
