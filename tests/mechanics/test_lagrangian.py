@@ -13,8 +13,11 @@ from canon.expression.symbols.symbol import (
     velocity,
 )
 from canon.mechanics.algebra.linear import SingularMatrixError
+from canon.mechanics.hamilton.symmetry import is_constant_of_motion
+from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 from canon.mechanics.lagrange.force import rayleigh_forces
 from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.proof.domain.verdict import Undecided
 from canon.proof.vanish import vanishes
 
 m, a, l, g, k, m1, m2, l1, l2 = parameters("m a l g k m1 m2 l1 l2", positive=True)
@@ -160,6 +163,29 @@ def test_forces_enter_on_the_right():
     damped = Lagrangian(m * x.dot**2 / 2 - k * x**2 / 2, [x], forces=[-a * x.dot])
     assert vanishes(damped.equations[0] - (m * x.ddot + a * x.dot + k * x)).holds
     assert vanishes(damped.equations[0] - (m * x.ddot - a * x.dot + k * x)).fails
+
+
+def test_accelerations_that_forces_hold_are_solved_for():
+    """A body with the added mass μ has the mass m + μ, free or held."""
+    x, y = coordinates("x y")
+    mu = parameters("mu", positive=True)
+    free = Lagrangian(
+        m * (x.dot**2 + y.dot**2) / 2 - k * x**2 / 2, [x, y], forces=[-mu * x.ddot, -mu * x.ddot]
+    )
+    assert vanishes(free.accelerations[0] + k * x / (m + mu)).holds
+    assert vanishes(free.accelerations[0] + k * x / m).fails
+    assert vanishes(free.accelerations[1] - mu * k * x / (m * (m + mu))).holds
+    held = ConstrainedLagrangian(free, holonomic=[x - y])
+    assert vanishes(held.accelerations[0] + k * x / (2 * m + 2 * mu)).holds
+    assert vanishes(held.accelerations[0] + k * x / (2 * m + mu)).fails
+    assert is_constant_of_motion((m + mu) * x.dot**2 + k * x**2, free).holds
+    assert is_constant_of_motion(m * x.dot**2 + k * x**2, free).fails
+
+
+def test_forces_not_affine_in_the_accelerations_are_not_solved_for():
+    x = coordinates("x")
+    with pytest.raises(Undecided, match="not affine"):
+        Lagrangian(m * x.dot**2 / 2, [x], forces=[-(x.ddot**3)]).accelerations  # noqa: B018
 
 
 def test_a_moving_support_enters_through_time():

@@ -11,6 +11,7 @@ from sympy import Expr, Symbol
 
 from canon.exercise.question.answer import open_brackets
 from canon.exercise.question.continuous_answer import is_continuous
+from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.generating_answer import generating_function_of
 from canon.exercise.question.implicit_point import refuted_at_a_point, solved_somewhere
 from canon.exercise.question.question import (
@@ -19,12 +20,14 @@ from canon.exercise.question.question import (
     Question,
     Regular,
     Same,
+    decide,
     fails,
     wrong_variables,
 )
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.constraint_manifold import EmptyDomainError, inhabited, on_manifold, transported
 from canon.mechanics.algebra.substitution import substitute
+from canon.mechanics.canonical.map_branches import near_the_identity, over_the_old
 from canon.mechanics.hamilton.bracket import lagrange_bracket, lie_bracket, poisson_bracket, symplectic_unit
 from canon.mechanics.hamilton.pfaffian_form import bilinear_covariant, displacements
 from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict
@@ -33,6 +36,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from canon.exercise.sheet.reading import Reading
+    from canon.mechanics.algebra.constraint_manifold import Branch
     from canon.proof.domain.domain import Domain
 
 __all__ = [
@@ -157,11 +161,36 @@ def _implicit_canonicity(
             raise
         yield found
         return
-    for branch in branches:
-        there = A.applyfunc(lambda entry, values=branch.values: substitute(entry, values))
-        yield Regular(there, "∂(equations)/∂(new variables)", branch.domain)
-        yield Same(
-            tuple(Part("M J Mᵀ − c J", entry, through=branch.values) for entry in entries), branch.domain
+    if len(branches) > 1:
+        branches = over_the_old(branches, old, new)
+        branches = near_the_identity(equations, branches, old, new, reading.domain) or branches
+    asked = [_canonicity_on(branch, A, entries) for branch in branches]
+    _check_agreement(asked, Deadline.after(reading.claim.budget / 4))
+    for questions in asked:
+        yield from questions
+
+
+def _canonicity_on(branch: Branch, A: sp.Matrix, entries: Sequence[Expr]) -> tuple[Question, Question]:
+    """Return the questions whether equations determine a map on a branch of their solutions, a canonical one."""
+    there = A.applyfunc(lambda entry: substitute(entry, branch.values))
+    parts = tuple(Part("M J Mᵀ − c J", entry, through=branch.values) for entry in entries)
+    return Regular(there, "∂(equations)/∂(new variables)", branch.domain), Same(parts, branch.domain)
+
+
+def _check_agreement(asked: Sequence[Sequence[Question]], deadline: Deadline) -> None:
+    """Refuse equations of which one solution is a canonical map and another is none.
+
+    Raises
+    ------
+    Undecided
+        Where they are not of one kind, and the one near the identity was not told apart.
+    """
+    verdicts = [[decide(q, deadline) for q in each] for each in asked] if len(asked) > 1 else []
+    wrong = any(verdict.fails for each in verdicts for verdict in each)
+    if wrong and any(all(verdict.holds for verdict in each) for each in verdicts):
+        raise Undecided(
+            "the equations have several solutions, of which only some are canonical, and which one is near the "
+            "identity was not decided; give the range of the step in the box, or equations that have one solution"
         )
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.exercise.question.deadline import SIDE_SECONDS
 from canon.exercise.question.given_bodies import check_real, given_bodies, given_forces
 from canon.exercise.question.question import Part, Question, Same
 from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
@@ -18,12 +19,15 @@ from canon.mechanics.algebra.substitution import exchanged, substitute
 from canon.mechanics.lagrange.body import kinetic_energy as energy_of_bodies
 from canon.mechanics.lagrange.force import potential_forces
 from canon.mechanics.lagrange.quasi_velocity import Kinematics
+from canon.proof.domain.verdict import Undecided
+from canon.proof.kinks import vanishes_off_kinks
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from canon.exercise.sheet.reading import Reading
     from canon.mechanics.lagrange.body import Body
+    from canon.proof.domain.domain import Domain
 
 __all__ = ["generalized_force", "kinetic_energy", "shown_short"]
 
@@ -103,19 +107,35 @@ def _of_work(reading: Reading) -> Iterator[tuple[Expr, ...]]:
 
 
 def _of_power(reading: Reading) -> Iterator[tuple[Expr, ...]]:
-    """Yield ∂P/∂q̇ where P is affine in the velocities; with one coordinate P/q̇ where it is not."""
+    """Yield ∂P/∂q̇ where P is linear in the velocities; with one coordinate P/q̇ where it is not."""
     if not reading.has("power"):
         return
     q, power = reading.symbols("q"), reading.expression("power")
     velocities = [velocity(x) for x in q]
     spread = cast("Expr", sp.expand(power))
     slopes = tuple(spread.diff(v) for v in velocities)
-    if not any(s.has(*velocities) for s in slopes):
+    if not any(s.has(*velocities) for s in slopes) and _is_none_at_rest(spread, velocities, reading.domain):
         yield slopes
     elif len(q) == 1:
         yield (sp.cancel(power / velocities[0]),)
     else:
         reading.fault(
             "power",
-            "does not determine the forces unless it is affine in the velocities; give forces or work",
+            "does not determine the forces unless it is linear in the velocities; give forces or work",
         )
+
+
+def _is_none_at_rest(power: Expr, velocities: Sequence[Symbol], domain: Domain) -> bool:
+    """Tell whether a power affine in the velocities is linear in them: P₀ of an engine is no force times a velocity.
+
+    Raises
+    ------
+    Undecided
+        Where that was not decided.
+    """
+    verdict = vanishes_off_kinks(exchanged(power, dict.fromkeys(velocities, sp.S.Zero)), domain, SIDE_SECONDS)
+    if verdict.undecided:
+        raise Undecided(
+            "whether the power vanishes at rest was not decided; write it as a sum over the velocities"
+        )
+    return verdict.holds

@@ -17,15 +17,16 @@ from canon.exercise.question.continuous_answer import constants_are_continuous
 from canon.exercise.question.jumping_system import check_kept_at_jumps, check_motion_at_jumps
 from canon.exercise.question.question import Determines, Part, Question, Regular, Same, Tells, wrong_variables
 from canon.expression.symbols.symbol import Rate, acceleration, velocity
-from canon.mechanics.algebra.constraint_manifold import on_manifold, transported
+from canon.mechanics.algebra.constraint_manifold import Branch, on_manifold, transported
 from canon.mechanics.algebra.possible_motion import motion_is_continuous, motion_is_real
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.hamilton.legendre import where_root_is_real
 from canon.mechanics.hamilton.legendre_pair import hamiltonian
+from canon.mechanics.lagrange.hidden_constraints import Motions, motions_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from sympy import Expr, Symbol
 
@@ -90,10 +91,10 @@ def _solution(reading: Reading, system: Hamiltonian) -> Iterator[Question]:
 def constant_of_motion(reading: Reading) -> Iterator[Question]:
     """dI/dt = Σ ∂I/∂x ẋ + ∂I/∂t vanishes, where the restrictions do."""
     I, t = reading.expression("I"), reading.time
-    rates = _rates(reading, I)
+    rates, motions = _rates(reading, I)
     rate_of, system = rate_along(rates, t), mechanical_system(reading)
     restrictions = reading.equations("restrict") if reading.has("restrict") else ()
-    branches = on_manifold(restrictions, reading.domain)
+    branches = _restricted(restrictions, motions)
     for branch in branches:
         there = substitute(I, branch.values)
         yield Same((Part("dI/dt", *rate_of(I), through=branch.values),), branch.domain)
@@ -101,6 +102,19 @@ def constant_of_motion(reading: Reading) -> Iterator[Question]:
         yield from constants_are_continuous(there, (*rates, t), branch.domain, system_of(reading))
     trivial = tuple(same_everywhere((I,), tuple(rates), b.domain, b.values) for b in branches)
     yield Tells(trivial, "it follows from `restrict` alone" if restrictions else NOT_OF_THE_STATE)
+    if motions.through:
+        seen = tuple(same_everywhere((substitute(I, b.values),), tuple(rates), b.domain) for b in branches)
+        yield Tells(seen, "it is the same number on every motion")
+
+
+def _restricted(restrictions: Sequence[Expr], motions: Motions) -> list[Branch]:
+    """Return the states of motions at which restrictions hold, with the rates there of what is bound."""
+    here = [substitute(f, motions.through) for f in restrictions]
+    branches = on_manifold(here, motions.branch.domain)
+    return [
+        Branch({s: substitute(f, b.values) for s, f in motions.through.items()} | dict(b.values), b.domain)
+        for b in branches
+    ]
 
 
 def equality(reading: Reading) -> Iterator[Question]:
@@ -109,17 +123,22 @@ def equality(reading: Reading) -> Iterator[Question]:
     yield Same((Part("lhs", lhs, rhs, key="lhs"),), reading.domain)
 
 
-def _rates(reading: Reading, I: Expr) -> dict[Symbol, Expr]:
+def _rates(reading: Reading, I: Expr) -> tuple[dict[Symbol, Expr], Motions]:
+    """Return the rate of each variable, and what binds them: equations of first order have no rates that are free."""
+    free = Motions(Branch({}, reading.domain), {})
     if reading.has("H"):
         q, p = reading.phase_space("q", "p")
         system = Hamiltonian(reading.expression("H"), q, p, reading.time)
-        return dict(zip((*q, *p), system.vector_field, strict=True))
-    if reading.has("L"):
-        lagrangian = lagrangian_of(reading)
-        rates: dict[Symbol, Expr] = {x: velocity(x) for x in lagrangian.q}
-        if I.has(*(acceleration(x) for x in lagrangian.q)):
-            reading.fault("I", "should depend on coordinates, velocities and time only")
-        if I.has(*lagrangian.velocities):
-            rates |= dict(zip(lagrangian.velocities, lagrangian.accelerations, strict=True))
-        return rates
-    return dict(zip(reading.symbols("x"), reading.expressions("X", like="x"), strict=True))
+        return dict(zip((*q, *p), system.vector_field, strict=True)), free
+    if not reading.has("L"):
+        return dict(zip(reading.symbols("x"), reading.expressions("X", like="x"), strict=True)), free
+    lagrangian = lagrangian_of(reading)
+    accelerations = tuple(acceleration(x) for x in lagrangian.q)
+    if I.has(*accelerations):
+        reading.fault("I", "should depend on coordinates, velocities and time only")
+    motions = motions_of(lagrangian, reading.domain)
+    rates: dict[Symbol, Expr] = dict(zip(lagrangian.q, lagrangian.velocities, strict=True))
+    if motions.branch.values or len(motions.solution) < len(accelerations):  # put in afterwards
+        return rates | dict(zip(lagrangian.velocities, accelerations, strict=True)), motions
+    found = (motions.solution[a] for a in accelerations)
+    return rates | dict(zip(lagrangian.velocities, found, strict=True)), free

@@ -33,11 +33,13 @@ from canon.mechanics.algebra.constraint_manifold import transported
 from canon.mechanics.algebra.linear import solve_affine
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.lagrange.appell import GibbsAppell
+from canon.mechanics.lagrange.hidden_constraints import motions_of
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.reduction.routh import routhian as routh
 from canon.proof.continuity.smooth import PIECED
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.verdict import Undecided
+from canon.proof.kinks import vanishes_off_kinks
 from canon.proof.trees.affine_form import is_affine
 
 if TYPE_CHECKING:
@@ -56,6 +58,9 @@ __all__ = [
     "lagrangian_of",
     "routhian",
 ]
+
+SECONDS = 1.0
+"""Time for the question whether two rates are equal at every state, on a motion or not."""
 
 
 def euler_lagrange(reading: Reading) -> Iterator[Question]:
@@ -77,12 +82,19 @@ def dissipative(reading: Reading) -> Iterator[Question]:
     if reading.has("claim"):
         yield from same_motion(reading, lagrangian)
     if reading.has("energy_rate"):
-        claimed = reading.expression("energy_rate")
         rate = sp.Add(*(velocity(x) * Q for x, Q in zip(q, forces, strict=True)), -lagrangian.L.diff(t))
-        part = Part("dE/dt", claimed, rate, on_the_motion(lagrangian, claimed), "energy_rate")
-        yield Same((part,), reading.domain, lambda: rate)
-        written = [a for a in map(acceleration, q) if claimed.has(a)]
-        yield Determines(lambda: (f"dE/dt stays open: it is written with {written[0]}",) if written else ())
+        yield from _energy_rate(reading, lagrangian, rate)
+
+
+def _energy_rate(reading: Reading, lagrangian: Lagrangian, rate: Expr) -> Iterator[Question]:
+    """Yield whether the claimed dE/dt is a rate on all motions, which may bind velocities too."""
+    claimed, accelerations = reading.expression("energy_rate"), [acceleration(x) for x in lagrangian.q]
+    through, domain = _on_the_motion(lagrangian, (claimed, rate), reading.domain)
+    right = substitute(rate, through)
+    shown = right if rate.has(*accelerations) else rate
+    yield Same((Part("dE/dt", claimed, right, through, "energy_rate"),), domain, lambda: shown)
+    written = [a for a in accelerations if claimed.has(a)]
+    yield Determines(lambda: (f"dE/dt stays open: it is written with {written[0]}",) if written else ())
 
 
 def routhian(reading: Reading) -> Iterator[Question]:
@@ -231,12 +243,15 @@ def same_motion(reading: Reading, lagrangian: Lagrangian) -> Iterator[Question]:
     yield more_than_zero(claimed, reading.domain)
 
 
-def on_the_motion(lagrangian: Lagrangian, *expressions: Expr) -> dict[Symbol, Expr]:
-    """Return the accelerations on the motion, where any of the expressions holds one."""
-    unknowns = [acceleration(x) for x in lagrangian.q]
-    if not any(expression.has(*unknowns) for expression in expressions):
-        return {}
-    return dict(zip(unknowns, lagrangian.accelerations, strict=True))
+def _on_the_motion(
+    lagrangian: Lagrangian, sides: tuple[Expr, Expr], domain: Domain
+) -> tuple[dict[Symbol, Expr], Domain]:
+    """Return what two sides hold that is determined on the motion, and where; nothing where they are equal anyway."""
+    if vanishes_off_kinks(sides[0] - sides[1], domain, SECONDS).holds:
+        return {}, domain
+    motions = motions_of(lagrangian, domain)
+    held = {s: value for s, value in motions.through.items() if any(side.has(s) for side in sides)}
+    return held, motions.branch.domain
 
 
 def _is_affine_in_velocities(f: Expr, q: Sequence[Symbol], domain: Domain) -> Iterator[Question]:

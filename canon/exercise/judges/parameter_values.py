@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.exercise.question.answer_values import without_value
 from canon.exercise.question.deadline import BudgetSpent, Deadline
 from canon.exercise.question.parameter_system import Family, covers, families
 from canon.exercise.question.question import (
@@ -26,7 +27,8 @@ from canon.exercise.sheet.sheet import Claim
 from canon.frozen_mapping import FrozenMapping
 from canon.mechanics.algebra.constraint_manifold import EmptyDomainError
 from canon.mechanics.algebra.linear import SingularMatrixError
-from canon.mechanics.algebra.substitution import exchanged
+from canon.mechanics.algebra.substitution import exchanged, substitute
+from canon.proof.domain.domain import has_point
 from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict, all_hold
 from canon.proof.vanish import vanishes
 
@@ -58,13 +60,14 @@ def parameters(reading: Reading, ask: Ask) -> Iterator[Question]:
         known = found or _found(ask, reading, inner, wanted, deadline)
         if not known and deadline.over:
             raise BudgetSpent
-        return _told(known[0]) if known else None
+        return _told(ask, reading, inner, known[0], wanted, deadline) if known else None
 
     held: list[Verdict] = []
     for family in claimed:
-        verdict = _holds_with(ask, inner, family, Deadline.after(SHARE * budget / len(claimed)))
+        deadline = Deadline.after(SHARE * budget / len(claimed))
+        verdict = _judged(ask, reading, inner, family, wanted, deadline)
         if verdict.fails:
-            yield Stated(_no_solution(family, verdict), all_of_them)
+            yield Stated(verdict, all_of_them)
             return
         held.append(verdict)
     whole = all_hold(held) if held else Verdict(Status.HOLDS, certificate="exact")
@@ -89,6 +92,17 @@ def parameters(reading: Reading, ask: Ask) -> Iterator[Question]:
         whole = _left_open(whole, among)
     certificate = " + ".join(dict.fromkeys([*(v.certificate for v in held), "exact"]))
     yield Stated(replace(whole, question="all values", certificate=certificate) if whole.holds else whole)
+
+
+def _judged(
+    ask: Ask, reading: Reading, inner: Reading, family: Family, wanted: Sequence[Symbol], deadline: Deadline
+) -> Verdict:
+    """Return whether claimed values are solutions, those of what they leave open included."""
+    verdict = _holds_with(ask, inner, family, deadline)
+    if verdict.fails:
+        return _no_solution(family, verdict)
+    beside = list(_beside_exceptions(ask, reading, inner, family, wanted, deadline)) if verdict.holds else []
+    return all_hold([verdict, *beside]) if beside else verdict
 
 
 def _in_time(deadline: Deadline) -> str:
@@ -170,8 +184,11 @@ def _holds_with(ask: Ask, inner: Reading, family: Family, deadline: Deadline) ->
     if outside:
         return Verdict(Status.FAILS, certificate="exact", feedback=outside)
     try:
-        verdicts: list[Verdict] = []
-        for question in _questions(ask, _with(inner, family)):
+        there = _with(inner, family)
+        verdicts = list(without_value(there, deadline)) if family else []
+        if any(v.fails for v in verdicts):
+            return all_hold(verdicts)
+        for question in _questions(ask, there):
             if isinstance(question, Same) and any(
                 p.residual.has(sp.zoo, sp.nan, sp.oo) for p in question.parts
             ):
@@ -223,6 +240,52 @@ def _with(inner: Reading, family: Family) -> Reading:
     conditions = [*(domain if isinstance(domain, list) else [domain]), *said]
     keys = {**inner.claim.keys, **({"domain": conditions} if conditions else {})}
     return replace(inner, claim=replace(inner.claim, keys=FrozenMapping(keys)), at=FrozenMapping(family))
+
+
+def _beside_exceptions(
+    ask: Ask, reading: Reading, inner: Reading, family: Family, wanted: Sequence[Symbol], deadline: Deadline
+) -> Iterator[Verdict]:
+    """Yield FAILS where a value of what is left open is no solution, as an answer says nothing then.
+
+    What has to be regular, or to say something, was asked at generic values; what is left open may have every value.
+    """
+    open_, there = [s for s in wanted if s not in family], _with(inner, family)
+    for question in _questions(ask, there) if open_ else ():
+        gone, why = _not_all_zero(question)
+        if not any(f.has(*open_) for f in gone):
+            continue
+        try:
+            found = families(gone, open_, _given(reading, wanted), there.domain, deadline)
+        except Undecided as reason:
+            yield Verdict(Status.UNDECIDED, evidence=(Evidence("open", str(reason)),))
+            return
+        for exception in found:
+            together = {s: substitute(value, exception) for s, value in family.items()} | exception
+            if exception and _is_allowed(inner, together):
+                said = f"{_written(exception)} is left open, and is no solution: {why}"
+                yield Verdict(Status.FAILS, "all values", "exact", feedback=said)
+                return
+
+
+def _not_all_zero(question: Question) -> tuple[list[Expr], str]:
+    """Return what must not vanish altogether, and what is said where it does."""
+    if isinstance(question, Regular):
+        determinant = cast("Expr", question.matrix.det(method="berkowitz"))
+        return [determinant], question.singular_is or f"{question.name} is singular then"
+    if isinstance(question, Tells) and all(isinstance(each, Same) for each in question.trivial):
+        same = [each for each in question.trivial if isinstance(each, Same)]
+        return [part.residual for each in same for part in each.parts], question.feedback
+    return [], ""
+
+
+def _is_allowed(inner: Reading, family: Family) -> bool:
+    """Whether there certainly are such values of the parameters by what is assumed of them."""
+    if _outside(family) or any(value.has(sp.zoo, sp.nan) for value in family.values()):
+        return False
+    try:
+        return has_point(_with(inner, family).domain)
+    except InvalidClaim:  # the domain excludes them
+        return False
 
 
 def _outside(family: Family) -> str:
@@ -291,8 +354,17 @@ def _distance(family: Family, claimed: Sequence[Family]) -> Expr:
     )
 
 
-def _told(found: Sequence[Family]) -> tuple[str, ...]:
-    return tuple(_written(family) for family in found) or ("no values",)
+def _told(
+    ask: Ask,
+    reading: Reading,
+    inner: Reading,
+    found: Sequence[Family],
+    wanted: Sequence[Symbol],
+    deadline: Deadline,
+) -> tuple[str, ...] | None:
+    """Return the values as they are shown; None where some that they leave open are no solutions."""
+    beside = [v for f in found for v in _beside_exceptions(ask, reading, inner, f, wanted, deadline)]
+    return None if beside else tuple(_written(family) for family in found) or ("no values",)
 
 
 def _written(family: Family) -> str:

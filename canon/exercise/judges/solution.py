@@ -5,6 +5,7 @@ A solution is given as functions of the time, or as velocities from which it fol
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -21,18 +22,18 @@ from canon.expression.symbols.symbol import Rate, acceleration, time_derivative,
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.constraint_manifold import transported
 from canon.mechanics.algebra.linear import is_regular
-from canon.mechanics.algebra.possible_motion import motion_is_continuous, motion_is_real
+from canon.mechanics.algebra.possible_motion import motion_is_continuous, motion_is_real, real_somewhere
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.analytic import proved_sign
 from canon.proof.continuity.smooth import PIECED
-from canon.proof.domain.verdict import Undecided
+from canon.proof.domain.domain import Domain
+from canon.proof.domain.verdict import Undecided, Verdict
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from canon.exercise.sheet.reading import Reading
-    from canon.proof.domain.domain import Domain
 
 __all__ = ["solution"]
 
@@ -223,6 +224,7 @@ def _no_answer() -> None:
 
 
 def _initial_rates(reading: Reading, q: Sequence[Symbol], rates: Mapping[Symbol, Expr]) -> Iterator[Question]:
+    """The motion starts with real velocities, and with those that the claim says."""
     table = reading.table("initial")
     names = {s.name for x in q for s in (x, velocity(x))}
     if not set(table) <= names:
@@ -232,13 +234,39 @@ def _initial_rates(reading: Reading, q: Sequence[Symbol], rates: Mapping[Symbol,
     parts: list[Part] = []
     for x in q:
         name = velocity(x).name
-        if name not in table:
-            continue
         there = substitute(rates[x], start)
-        if there.has(*q, sp.nan, sp.zoo):
+        if name in table and there.has(*q, sp.nan, sp.zoo):
             reading.fault("initial", "should give the place of every coordinate that the rate depends on")
-        parts.append(Part(f"{name} at the start", there, table[name]))
-    yield Same(tuple(parts), reading.domain, _no_answer, is_instead)
+        yield from _starts(name, there, q, start, reading.domain)
+        if name in table:
+            parts.append(Part(f"{name} at the start", there, table[name]))
+    if parts:
+        yield Same(tuple(parts), reading.domain, _no_answer, is_instead)
+
+
+def _starts(
+    name: str, there: Expr, q: Sequence[Symbol], start: Mapping[Symbol, Expr], domain: Domain
+) -> Iterator[Verdict]:
+    """Yield whether a rate has a real value at the start; nothing where the start is not said.
+
+    Raises
+    ------
+    Undecided
+        Where the value is a limit.
+    """
+    if there.has(*q):
+        return
+    if there in (sp.zoo, sp.oo, -sp.oo):
+        yield fails("the motion starts", f"{name} has no value at the start: no motion starts there")
+        return
+    if there.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
+        raise Undecided(f"{name} at the start is a limit, which is not taken; start elsewhere")
+    beside = Domain(tuple(c for c in domain.conditions if not c.has(*start)), domain.box)
+    verdict = real_somewhere([there], beside, "the motion starts")
+    said = f"{name} = {there} at the start"
+    if verdict.fails:
+        verdict = replace(verdict, feedback=f"{said} is not real: no motion starts there")
+    yield replace(verdict, assumed=(f"{said} is claimed where it is real",)) if verdict.assumed else verdict
 
 
 def _general(reading: Reading, values: Sequence[Expr], domain: Domain) -> Iterator[Question]:

@@ -141,14 +141,14 @@ def _is_answer(reading: Reading, key: str) -> bool:
 
 
 def _written(reading: Reading) -> Iterator[tuple[str, Expr]]:
-    """Yield every expression of a claim as it is written, by its key."""
+    """Yield every expression of a claim as it is written, by its key, with values of parameters put in."""
     shapes = KINDS[reading.claim.kind].shapes
     extended = reading.with_names(_displacements(reading))
     for key, value in reading.claim.keys.items():
         if shapes.get(key) in _EXPRESSIONS:
             for where, text in _texts(key, value):
                 try:
-                    yield where, parsed(as_written, text, extended.scope)
+                    yield where, _seen(parsed(as_written, text, extended.scope), reading.at)
                 except LanguageError:  # the judge of the kind says what is wrong with it
                     continue
 

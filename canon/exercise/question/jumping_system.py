@@ -197,7 +197,7 @@ def _change(gap: Expr, system: Hamiltonian | Lagrangian, domain: Domain) -> dict
     if gap.has(*system.velocities) or not _is_kick(gap, system, domain):
         return None
     try:
-        changed = solve(system.mass_matrix, sp.Matrix([gap.diff(x) for x in system.q]), domain)
+        changed = solve(system.inertia, sp.Matrix([gap.diff(x) for x in system.q]), domain)
     except SingularMatrixError:
         return None
     return dict(zip(system.velocities, changed.flat(), strict=True))

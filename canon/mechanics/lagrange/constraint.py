@@ -202,9 +202,9 @@ class ConstrainedLagrangian:
         L, A = self.lagrangian, self.directions
         still = {acceleration(s): sp.S.Zero for s in L.q}
         n, k = len(L.q), A.rows
-        upper = sp.Matrix(L.mass_matrix).row_join(-A.T)
+        upper = sp.Matrix(L.inertia).row_join(-A.T)
         lower = sp.Matrix(A).row_join(sp.zeros(k, k))
-        right = sp.Matrix([*(-b for b in L.bias), *(-exchanged(c, still) for c in self.differentiated)])
+        right = sp.Matrix([-exchanged(e, still) for e in (*L.bias, *self.differentiated)])
         try:
             column = solve(upper.col_join(lower), right, name="the matrix of masses and constraints")
         except SingularMatrixError as singular:

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from canon.expression.symbols.symbol import time_derivative, velocity
-from canon.mechanics.algebra.constraint_manifold import check_whole, inhabited, on_manifold
-from canon.mechanics.algebra.linear import eliminate
+from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
+from canon.mechanics.algebra.constraint_manifold import Branch, check_whole, inhabited, on_manifold
+from canon.mechanics.algebra.linear import SingularMatrixError, eliminate
 from canon.mechanics.algebra.substitution import exchanged, substitute
 from canon.proof.domain.verdict import Undecided
 from canon.proof.kinks import vanishes_off_kinks
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
     from sympy import Expr, Symbol
 
-    from canon.mechanics.algebra.constraint_manifold import Branch
     from canon.mechanics.algebra.linear import Elimination
+    from canon.mechanics.lagrange.lagrangian import Lagrangian
     from canon.proof.domain.domain import Domain
 
-__all__ = ["Motions", "all_motions"]
+__all__ = ["Motions", "all_motions", "motions_of"]
 
 MOST_ROUNDS = 5
 SECONDS = 1.0
@@ -107,6 +107,31 @@ def all_motions(
             raise Undecided(f"the equations ask for {none[0]} = 0, so that there is no motion")
         known += [*new, *(time_derivative(f, q, t) for f in new if not f.has(*v))]
     raise Undecided("the equations bind the state further with every rate that is taken")
+
+
+def motions_of(lagrangian: Lagrangian, domain: Domain) -> Motions:
+    """Return all motions of a Lagrangian with its forces, also where its equations bind the state.
+
+    Raises
+    ------
+    Undecided
+        As in :func:`all_motions`, or where a force is not affine in the accelerations.
+    EmptyDomainError
+        Where there are no motions.
+
+    Examples
+    --------
+    >>> from canon import Domain, Lagrangian, coordinates
+    >>> x, u = coordinates("x u")
+    >>> motions_of(Lagrangian(u*x.dot - u**2/2 - x**2/2, [x, u]), Domain()).through
+    {u_dot: -x, x_dot: u, x_ddot: -x, u_ddot: -u}
+    """
+    unknowns = tuple(acceleration(x) for x in lagrangian.q)
+    try:
+        solved: dict[sp.Symbol, Expr] = dict(zip(unknowns, lagrangian.accelerations, strict=True))
+    except SingularMatrixError:
+        return all_motions(lagrangian.equations, (), lagrangian.q, unknowns, domain, lagrangian.t)
+    return Motions(Branch({}, domain), solved)
 
 
 def _in_echelon(equations: Sequence[Expr], unknowns: Sequence[Symbol], branch: Branch) -> Elimination:

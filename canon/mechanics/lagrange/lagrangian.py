@@ -15,6 +15,7 @@ from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.dynamicsymbols import check_none_reads_as_the_time, coordinate_symbols, plain
 from canon.mechanics.algebra.linear import SingularMatrixError, solve
 from canon.mechanics.algebra.substitution import as_tuple, entry, exchanged
+from canon.proof.domain.verdict import Undecided
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -167,16 +168,37 @@ class Lagrangian:
         )
 
     @cached_property
+    def inertia(self) -> sp.ImmutableDenseMatrix:
+        """What stands before the accelerations in the equations: M, less ∂Q/∂q̈ of forces such as that of added mass.
+
+        Raises
+        ------
+        Undecided
+            Where a force is not affine in the accelerations.
+        """
+        accelerations = [acceleration(s) for s in self.q]
+        if not any(Q.has(*accelerations) for Q in self.forces):
+            return self.mass_matrix
+        slopes = sp.Matrix([[Q.diff(a) for a in accelerations] for Q in self.forces])
+        if slopes.has(*accelerations):
+            raise Undecided("a force is not affine in the accelerations, so they were not solved for")
+        return sp.ImmutableDenseMatrix(self.mass_matrix - slopes)
+
+    @cached_property
     def accelerations(self) -> tuple[Expr, ...]:
-        """The accelerations q̈(q, q̇, t) that solve M q̈ = −bias.
+        """The accelerations q̈(q, q̇, t) that solve M q̈ = −bias, those that forces hold on the left.
 
         Raises
         ------
         SingularMatrixError
             Where M is singular: L does not determine the accelerations along the null direction.
+        Undecided
+            Where a force is not affine in the accelerations.
         """
+        still = {acceleration(s): sp.S.Zero for s in self.q}
+        rest = sp.Matrix([-exchanged(b, still) for b in self.bias])
         try:
-            found = solve(self.mass_matrix, -sp.Matrix(self.bias), name="the mass matrix")
+            found = solve(self.inertia, rest, name="the mass matrix")
         except SingularMatrixError as singular:
             raise SingularMatrixError(
                 f"{singular} in the velocities ({', '.join(map(str, self.velocities))}); L does not "
