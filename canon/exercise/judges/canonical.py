@@ -10,6 +10,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.question.answer import open_brackets
+from canon.exercise.question.answer_values import what_may_vanish, without_value_on
 from canon.exercise.question.continuous_answer import is_continuous
 from canon.exercise.question.generating_answer import generating_function_of
 from canon.exercise.question.implicit_point import refuted_at_a_point, solved_somewhere
@@ -145,6 +146,7 @@ def _implicit_canonicity(
     entries: list[Expr] = [difference[i, j] for i, j in combinations(range(2 * len(q)), 2)]
     keep = set(reading.scope.names.values()) - {*old, *new} | {reading.time}
     yield _defines_a_map(equations, old, new, tuple(keep), reading.domain)
+    yield from _valued_on_the_map(reading, equations, old, new, tuple(keep))
     if all(sp.expand(entry) == 0 for entry in entries):
         yield Regular(A, "∂(equations)/∂(new variables)", reading.domain)
         return
@@ -163,6 +165,25 @@ def _implicit_canonicity(
         yield Same(
             tuple(Part("M J Mᵀ − c J", entry, through=branch.values) for entry in entries), branch.domain
         )
+
+
+def _valued_on_the_map(
+    reading: Reading,
+    equations: Sequence[Expr],
+    old: Sequence[Symbol],
+    new: Sequence[Symbol],
+    keep: Sequence[Symbol],
+) -> Iterator[Verdict]:
+    """Yield what speaks against equations having values where they hold; a point at which they have some speaks for."""
+    open_ = [
+        u
+        for u in what_may_vanish(reading, "implicit", new)
+        if refuted_at_a_point(equations, old, new, {"": u}, reading.domain) is None
+    ]
+    if open_:
+        branches = on_manifold(equations, reading.domain, keep=keep, prefer=(*new, *old))
+        seen = [(branch.values, branch.domain) for branch in branches]
+        yield from without_value_on(reading, "implicit", new, lambda: seen)
 
 
 def _defines_a_map(

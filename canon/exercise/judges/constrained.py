@@ -10,6 +10,7 @@ from sympy import Expr, Symbol
 
 from canon.exercise.judges.lagrangian import lagrangian_of
 from canon.exercise.question.answer import equations_missing
+from canon.exercise.question.answer_values import without_value_on
 from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.question import Determines, Part, Question, Same, SameEquations, Tells, decide
 from canon.expression.symbols.symbol import acceleration, velocity
@@ -114,6 +115,9 @@ def _on_every_motion(reading: Reading) -> Iterator[Question]:
             solution, branch, through = {}, motions.branch, motions.through
         parts = _parts(open_, through, functions)
         yield Same(parts, branch.domain, partial(_shown, solution if len(branches) == 1 else {}))
+        seen = [({**jets, **through}, branch.domain)]
+        bound = (*through, *unknowns, *lagrangian.velocities, *q)
+        yield from without_value_on(reading, "claim", bound, lambda seen=seen: seen)
     free = "it follows from the constraints alone" if any(claims) else "it is true of anything"
     yield Tells(tuple(_on_any_motion(claims, rates, unknowns[: len(q)], branch) for branch in branches), free)
     yield Determines(partial(_left_open, claims, rates, system, unknowns, branches))

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
+from canon.exercise.question.deadline import SIDE_SECONDS
 from canon.exercise.sheet.kept_parses import parsed
 from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.kinds import KINDS
@@ -22,15 +24,17 @@ from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict
 from canon.proof.trees.anatomy import anatomy
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-    from sympy import Expr, Symbol
+    from sympy import Basic, Expr, Symbol
 
     from canon.exercise.question.deadline import Deadline
     from canon.exercise.sheet.reading import Reading
     from canon.proof.definedness.definedness import Lack
+    from canon.proof.definedness.hazards import Hazard
+    from canon.proof.domain.domain import Domain
 
-__all__ = ["without_value"]
+__all__ = ["what_may_vanish", "without_value", "without_value_on"]
 
 SHARE = 0.4
 """Part of the time of a claim that may be spent here."""
@@ -76,6 +80,60 @@ def without_value(reading: Reading, deadline: Deadline) -> Iterator[Verdict]:
     yield from _without_value_on_motions(reading, answers, until)
 
 
+def without_value_on(
+    reading: Reading,
+    key: str,
+    bound: Sequence[Symbol],
+    motions: Callable[[], Iterable[tuple[Mapping[Any, Expr], Domain]]],
+) -> Iterator[Verdict]:
+    """Yield what speaks against answers having values on the motions, nothing if they have.
+
+    E²/E = 0 is true of no motion: exactly where E vanishes the quotient has no value. Cancelled it would be another
+    equation, so that answers are looked at as they were written.
+
+    Parameters
+    ----------
+    reading, key
+        The claim, and where its answers stand.
+    bound
+        What motions determine, such as accelerations; answers that have a value whatever these are, are passed over.
+    motions
+        Yields what is determined in terms of what is free, and where; called only where it is needed.
+    """
+    risky = [(where, f, risks) for where, f in _written_under(reading, key) if (risks := _risks(f, bound))]
+    if not risky:
+        return
+    until = time.monotonic() + SIDE_SECONDS
+    for values, domain in motions():
+        for where, f, risks in risky:
+            if lack := lack_of_value(_seen(f, values), domain, until):
+                said = replace(lack, why=str(risks[0])) if lack.proved and len(risks) == 1 else lack
+                yield (_fails if lack.proved else _open)(said, f"{where}, on the motions,")
+
+
+def what_may_vanish(reading: Reading, key: str, bound: Sequence[Symbol]) -> list[Expr]:
+    """Return what stands below and in logarithms of answers, as they were written, and holds what motions determine.
+
+    Parameters
+    ----------
+    reading, key, bound
+        As for :func:`without_value_on`.
+    """
+    return [risk.argument for _, f in _written_under(reading, key) for risk in _risks(f, bound)]
+
+
+def _risks(f: Expr, bound: Sequence[Symbol]) -> list[Hazard]:
+    found = hazards(anatomy([f]).parts)
+    return [risk for risk in found if not risk.argument.free_symbols.isdisjoint(bound)]
+
+
+def _written_under(reading: Reading, key: str) -> Iterator[tuple[str, Expr]]:
+    """Yield the expressions under a key as they are written, but for those in whose place others are read."""
+    for where, f in () if reading.at else _written(reading):
+        if _outer(where) == key and where not in reading.instead:
+            yield where, f
+
+
 def _without_value_on_motions(
     reading: Reading, answers: Mapping[str, Expr], until: float
 ) -> Iterator[Verdict]:
@@ -99,18 +157,17 @@ def _without_value_on_motions(
 def _held(reading: Reading) -> list[Expr]:
     """Return what vanishes on the motions that a claim is about, the rates of constraints included."""
     found: list[Expr] = []
-    if reading.has("multipliers") or reading.has("contact"):
+    if any(map(reading.has, ("multipliers", "contact", "T"))):
         found += [f for key in _CONSTRAINTS if reading.has(key) for f in reading.equations(key)]
         q, velocities = reading.symbols("q"), [velocity(x) for x in reading.symbols("q")]
         found += [time_derivative(f, q, reading.time) for f in found if not f.has(*velocities)]
     return found + (list(reading.equations("restrict")) if reading.has("restrict") else [])
 
 
-def _seen(f: Expr, following: Mapping[Symbol, Expr]) -> Expr:
-    """Return an expression in the free variables, nothing cancelled where that can be avoided."""
-    if f.has(sp.Derivative, sp.Subs):
-        return substitute(f, following)
-    return put_in(f, dict(following.items()))
+def _seen(f: Expr, following: Mapping[Any, Expr]) -> Expr:
+    """Return an expression in the free variables, with nothing cancelled."""
+    inside: dict[Basic, Basic] = {part: substitute(part, following) for part in f.atoms(sp.Derivative, sp.Subs)}
+    return put_in(f, {**inside, **following})
 
 
 def _fails(lack: Lack, key: str) -> Verdict:
@@ -134,10 +191,15 @@ def _is_one_of_several(reading: Reading) -> bool:
 
 
 def _is_answer(reading: Reading, key: str) -> bool:
-    outer = key.partition(".")[0].partition("[")[0]
+    outer = _outer(key)
     inner_is_given = outer == "pairs" and not key.endswith(".value")
     kind = KINDS[reading.claim.kind]
     return outer in (*kind.answer, *kind.claimed_too) and not inner_is_given
+
+
+def _outer(where: str) -> str:
+    """Return the key of a claim under which something stands."""
+    return where.partition(".")[0].partition("[")[0]
 
 
 def _written(reading: Reading) -> Iterator[tuple[str, Expr]]:
