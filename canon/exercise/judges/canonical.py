@@ -183,7 +183,7 @@ def _valued_on_the_map(
     if open_:
         branches = on_manifold(equations, reading.domain, keep=keep, prefer=(*new, *old))
         seen = [(branch.values, branch.domain) for branch in branches]
-        yield from without_value_on(reading, "implicit", new, lambda: seen)
+        yield from without_value_on(reading, "implicit", new, lambda: seen, "on the map")
 
 
 def _defines_a_map(

@@ -99,8 +99,22 @@ def constant_of_motion(reading: Reading) -> Iterator[Question]:
         yield Same((Part("dI/dt", *rate_of(I), through=branch.values),), branch.domain)
         check_kept_at_jumps(there, system, branch.domain)
         yield from constants_are_continuous(there, (*rates, t), branch.domain, system_of(reading))
-    trivial = tuple(same_everywhere((I,), tuple(rates), b.domain, b.values) for b in branches)
+    moved = _moved_in_any_way(reading) if restrictions else {}
+    trivial = (
+        tuple(Same((Part("dI/dt", *rate_along(moved, t)(I), through=b.values),), b.domain) for b in branches)
+        if moved
+        else tuple(same_everywhere((I,), tuple(rates), b.domain, b.values) for b in branches)
+    )
     yield Tells(trivial, "it follows from `restrict` alone" if restrictions else NOT_OF_THE_STATE)
+
+
+def _moved_in_any_way(reading: Reading) -> dict[Symbol, Expr]:
+    """Return the rates of coordinates and velocities whatever moves them; none where no Lagrangian is given.
+
+    Where ẋ = 0, d(x³)/dt = 3 x² ẋ vanishes in any system: only what takes the accelerations of this one says something.
+    """
+    q = reading.symbols("q") if reading.has("L") else ()
+    return {s: rate(x) for x in q for s, rate in ((x, velocity), (velocity(x), acceleration))}
 
 
 def equality(reading: Reading) -> Iterator[Question]:

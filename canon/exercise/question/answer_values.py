@@ -85,6 +85,7 @@ def without_value_on(
     key: str,
     bound: Sequence[Symbol],
     motions: Callable[[], Iterable[tuple[Mapping[Any, Expr], Domain]]],
+    there: str = "on the motions",
 ) -> Iterator[Verdict]:
     """Yield what speaks against answers having values on the motions, nothing if they have.
 
@@ -99,6 +100,8 @@ def without_value_on(
         What motions determine, such as accelerations; answers that have a value whatever these are, are passed over.
     motions
         Yields what is determined in terms of what is free, and where; called only where it is needed.
+    there
+        In words, where that is.
     """
     risky = [(where, f, risks) for where, f in _written_under(reading, key) if (risks := _risks(f, bound))]
     if not risky:
@@ -108,7 +111,7 @@ def without_value_on(
         for where, f, risks in risky:
             if lack := lack_of_value(_seen(f, values), domain, until):
                 said = replace(lack, why=str(risks[0])) if lack.proved and len(risks) == 1 else lack
-                yield (_fails if lack.proved else _open)(said, f"{where}, on the motions,")
+                yield (_fails if lack.proved else _open)(said, f"{where}, {there},")
 
 
 def what_may_vanish(reading: Reading, key: str, bound: Sequence[Symbol]) -> list[Expr]:
@@ -166,7 +169,9 @@ def _held(reading: Reading) -> list[Expr]:
 
 def _seen(f: Expr, following: Mapping[Any, Expr]) -> Expr:
     """Return an expression in the free variables, with nothing cancelled."""
-    inside: dict[Basic, Basic] = {part: substitute(part, following) for part in f.atoms(sp.Derivative, sp.Subs)}
+    inside: dict[Basic, Basic] = {
+        part: substitute(part, following) for part in f.atoms(sp.Derivative, sp.Subs)
+    }
     return put_in(f, {**inside, **following})
 
 
