@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
+from sympy.core.function import AppliedUndef
 
 from canon.exercise.question.answer import open_brackets
 from canon.exercise.question.answer_values import what_may_vanish, without_value_on
@@ -180,10 +181,16 @@ def _valued_on_the_map(
         for u in what_may_vanish(reading, "implicit", new)
         if refuted_at_a_point(equations, old, new, {"": u}, reading.domain) is None
     ]
-    if open_:
+    if not open_:
+        return
+    try:
         branches = on_manifold(equations, reading.domain, keep=keep, prefer=(*new, *old))
-        seen = [(branch.values, branch.domain) for branch in branches]
-        yield from without_value_on(reading, "implicit", new, lambda: seen, "on the map")
+    except Undecided:
+        if any(equation.has(AppliedUndef) for equation in equations):  # of which no point is looked at
+            return
+        raise
+    seen = [(branch.values, branch.domain) for branch in branches]
+    yield from without_value_on(reading, "implicit", new, lambda: seen, "on the map")
 
 
 def _defines_a_map(

@@ -116,7 +116,7 @@ def _on_every_motion(reading: Reading) -> Iterator[Question]:
         parts = _parts(open_, through, functions)
         yield Same(parts, branch.domain, partial(_shown, solution if len(branches) == 1 else {}))
         seen = [({**jets, **through}, branch.domain)]
-        bound = (*through, *unknowns, *lagrangian.velocities, *q)
+        bound = unknowns if solution else (*unknowns, *lagrangian.velocities, *q)
         yield from without_value_on(reading, "claim", bound, lambda seen=seen: seen)
     free = "it follows from the constraints alone" if any(claims) else "it is true of anything"
     yield Tells(tuple(_on_any_motion(claims, rates, unknowns[: len(q)], branch) for branch in branches), free)

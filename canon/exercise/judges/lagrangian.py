@@ -353,7 +353,10 @@ def gibbs_appell(reading: Reading) -> Iterator[Question]:
 
 def _motions_of_bodies(appell: GibbsAppell, domain: Domain) -> Iterator[tuple[Mapping[Symbol, Expr], Domain]]:
     """Yield q̇, q̈ and u̇ on the motions, in terms of q, u and t."""
-    found = solve_affine(appell.equations, appell.u_dot, domain)
+    try:
+        found = solve_affine(appell.equations, appell.u_dot, domain)
+    except SingularMatrixError:  # what S does not determine stays free
+        found = {}
     rates = {rate: substitute(value, found) for rate, value in appell.kinematics.through.items()}
     yield {**rates, **found}, domain
 

@@ -54,13 +54,15 @@ def reaction(reading: Reading) -> Iterator[Question]:
     """Multipliers or generalized forces of constraint are what is claimed, on every motion that is meant."""
     q, multipliers = reading.symbols("q"), reading.symbols("multipliers")
     constraints = reading.equations("constraints")
-    moving = (*q, *(rate(x) for x in q for rate in (velocity, acceleration)), *multipliers)
-    risky = any(what_may_vanish(reading, key, moving) for key in ("values", "force"))
+    bound = (*map(acceleration, q), *multipliers)
+    risky = any(what_may_vanish(reading, key, bound) for key in ("values", "force"))
     if not (reading.has("values") or risky) and _force_is_the_rest(reading, constraints, multipliers):
         check_not_empty(constraints, q, reading.domain, reading.time)
         yield Verdict(Status.HOLDS, "the forces of constraint", "exact")
         yield Determines(lambda: stay_open(_held(reading, multipliers)))
         return
+    if reading.has("integrals"):  # which bind the state too
+        bound += (*q, *map(velocity, q))
     values = reading.table("values") if reading.has("values") else {}
     claimed = reading.expressions("force", like="q") if reading.has("force") else ()
     for motion in _motions(reading, constraints, multipliers, (*values.values(), *claimed)):
@@ -68,7 +70,7 @@ def reaction(reading: Reading) -> Iterator[Question]:
         yield Same(parts, motion.branch.domain, lambda parts=parts: _answer(parts))
         seen = [({**motion.jets, **motion.branch.values, **motion.solution}, motion.branch.domain)]
         for key in ("values", "force"):
-            yield from without_value_on(reading, key, moving, lambda seen=seen: seen)
+            yield from without_value_on(reading, key, bound, lambda seen=seen: seen)
     left = _held(reading, multipliers) if claimed else [s for s in multipliers if s.name not in values]
     yield Determines(lambda: stay_open(left))
 
