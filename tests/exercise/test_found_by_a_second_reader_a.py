@@ -329,3 +329,41 @@ CENTRAL = {
 )
 def test_a_complex_equation_says_two_real_ones(system, claim, due):
     assert said("euler-lagrange", **system, claim=claim) == due
+
+
+@pytest.mark.parametrize(
+    ("kind", "system", "key", "answer", "factor"),
+    [
+        ("constant-of-motion", PHASE, "I", "(p**2 + q**2){}", "q_dot - p"),
+        ("constant-of-motion", OSCILLATOR, "I", "(x_dot**2 + x**2){}", "x_ddot + x"),
+        ("conserved-or-not", PHASE, "conserved", ["(p**2 + q**2){}"], "q_dot - p"),
+        ("conserved-or-not", OSCILLATOR, "not_conserved", ["x_dot{}"], "x_ddot + x"),
+        ("hamilton-equations", {**PHASE, "p_dot": ["-q"]}, "q_dot", ["p{}"], "q_dot - p"),
+        ("hamilton-equations", PHASE, "solution", {"q": "sin(t){}", "p": "cos(t)"}, "q_dot - cos(t)"),
+        ("solution", OSCILLATOR, "solution", {"x": "sin(t){}"}, "x - sin(t)"),
+        ("solution", OSCILLATOR, "rates", {"x": "sqrt(1 - x**2){}"}, "x_dot - sqrt(1 - x**2)"),
+        ("kinetic-energy", BAR, "T", "m*x_dot**2{}", "x_ddot - y_ddot"),
+        ("legendre-hamiltonian", {"q": ["q"], "p": ["p"], "L": "q_dot**2/2"}, "H", "p**2/2{}", "p - q_dot"),
+        (
+            "generating-F2",
+            {"q": ["q"], "p": ["p"], "new_q": ["Q"], "new_p": ["P"], "map": {"Q": ["q"], "P": ["p"]}},
+            "F",
+            "q*P{}",
+            "p - P",
+        ),
+    ],
+)
+def test_what_cancels_has_a_value_on_the_motions(kind, system, key, answer, factor):
+    def with_factor(said_so, by):
+        if isinstance(said_so, str):
+            return said_so.format(by)
+        if isinstance(said_so, list):
+            return [with_factor(each, by) for each in said_so]
+        return {name: with_factor(each, by) for name, each in said_so.items()}
+
+    for by, due in (
+        ("", "holds"),
+        (f"*({factor})/({factor})", "fails"),
+        (f"*({factor} + 1)/({factor} + 1)", "holds"),
+    ):
+        assert said(kind, **system, **{key: with_factor(answer, by)}) == due

@@ -10,9 +10,11 @@ from canon.exercise.judges.conserved import (
     rate_along,
     same_everywhere,
     system_of,
+    valued_on_motions,
 )
 from canon.exercise.judges.lagrangian import lagrangian_of
 from canon.exercise.question.answer import stay_open
+from canon.exercise.question.answer_values import without_value_on
 from canon.exercise.question.continuous_answer import constants_are_continuous
 from canon.exercise.question.jumping_system import check_kept_at_jumps, check_motion_at_jumps
 from canon.exercise.question.question import Determines, Part, Question, Regular, Same, Tells, wrong_variables
@@ -64,6 +66,8 @@ def hamilton_equations(reading: Reading) -> Iterator[Question]:
             for z, rate, right, key in zip((*q, *p), claimed, system.vector_field, keys, strict=True)
         )
         yield Same(parts, reading.domain, lambda: system.vector_field)
+        for key in ("q_dot", "p_dot"):
+            yield from valued_on_motions(reading, key)
     if reading.has("solution"):
         yield from _solution(reading, system)
 
@@ -83,6 +87,8 @@ def _solution(reading: Reading, system: Hamiltonian) -> Iterator[Question]:
         Part(f"the equation of {z}", motion[z].diff(system.t), substitute(rate, motion)) for z, rate in rates
     )
     yield Same(tuple(parts), domain)
+    known = {**motion, **{velocity(x): motion[x].diff(system.t) for x in system.q}}
+    yield from without_value_on(reading, "solution", tuple(known), lambda: [(known, domain)])
     check_motion_at_jumps(motion, system, domain, reading.domain)
     yield from motion_is_continuous(motion, domain, [system.H], system.t, velocities=False)
 
@@ -99,6 +105,7 @@ def constant_of_motion(reading: Reading) -> Iterator[Question]:
         yield Same((Part("dI/dt", *rate_of(I), through=branch.values),), branch.domain)
         check_kept_at_jumps(there, system, branch.domain)
         yield from constants_are_continuous(there, (*rates, t), branch.domain, system_of(reading))
+    yield from valued_on_motions(reading, "I")
     moved = _moved_in_any_way(reading) if restrictions else {}
     trivial = (
         tuple(Same((Part("dI/dt", *rate_along(moved, t)(I), through=b.values),), b.domain) for b in branches)

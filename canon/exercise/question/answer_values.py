@@ -13,13 +13,14 @@ from canon.exercise.sheet.kept_parses import parsed
 from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.kinds import KINDS
 from canon.expression.as_written import as_written
-from canon.expression.symbols.symbol import Coordinate, time_derivative, velocity
+from canon.expression.symbols.symbol import Coordinate, acceleration, time_derivative, velocity
 from canon.expression.text.tokens import LanguageError
 from canon.mechanics.algebra.constraint_manifold import EmptyDomainError, inhabited, on_manifold
 from canon.mechanics.algebra.substitution import substitute
 from canon.proof.definedness.definedness import lack_beside, lack_of_value
 from canon.proof.definedness.formula_around import put_in
 from canon.proof.definedness.hazards import hazards
+from canon.proof.domain.domain import Domain
 from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict
 from canon.proof.trees.anatomy import anatomy
 
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
     from canon.exercise.sheet.reading import Reading
     from canon.proof.definedness.definedness import Lack
     from canon.proof.definedness.hazards import Hazard
-    from canon.proof.domain.domain import Domain
 
 __all__ = ["what_may_vanish", "without_value", "without_value_on"]
 
@@ -74,10 +74,19 @@ def without_value(reading: Reading, deadline: Deadline) -> Iterator[Verdict]:
             [_seen(f, following) for k, f in answers.items() if k != key] if reading.kind.two_sided else []
         )
         lack = lack_beside(_seen(answer, following), [*given, *other], reading.domain, until)
+        lack = lack or _lack_on_the_map(answer, following, until)
         if lack is not None:
             open_ = not lack.proved or _is_one_of_several(reading)
             yield _open(lack, key) if open_ else _fails(lack, key)
     yield from _without_value_on_motions(reading, answers, until)
+
+
+def _lack_on_the_map(answer: Expr, following: Mapping[Symbol, Expr], until: float) -> Lack | None:
+    """Return that an answer has a value nowhere where some variables follow from others, if that is proved."""
+    if not _risks(answer, tuple(following)):
+        return None
+    lack = lack_of_value(_seen(answer, following), Domain(), until)
+    return lack if lack is not None and lack.proved else None
 
 
 def without_value_on(
@@ -142,12 +151,14 @@ def _without_value_on_motions(
 ) -> Iterator[Verdict]:
     """Yield FAILS for answers that have a value nowhere on the motions that satisfy the constraints."""
     risky = {key: f for key, f in answers.items() if hazards(anatomy([f]).parts)}
-    held = _held(reading) if risky else []
+    q = reading.symbols("q") if reading.is_names("q") else ()
+    accelerations = [a for a in map(acceleration, q) if any(f.has(a) for f in risky.values())]
+    held = _held(reading, second=bool(accelerations)) if risky else []
     if not held:
         return
-    velocities = [velocity(x) for x in reading.symbols("q")] if reading.has("q") else []
+    prefer = [*map(velocity, q), *accelerations]
     try:
-        branches = inhabited(on_manifold(held, reading.domain, keep=(reading.time,), prefer=velocities))
+        branches = inhabited(on_manifold(held, reading.domain, keep=(reading.time,), prefer=prefer))
     except (Undecided, EmptyDomainError):  # the judge of the kind says so
         return
     for key, f in risky.items():
@@ -157,13 +168,14 @@ def _without_value_on_motions(
             yield _fails(nowhere[0], f"{key}, where the constraints hold,")
 
 
-def _held(reading: Reading) -> list[Expr]:
-    """Return what vanishes on the motions that a claim is about, the rates of constraints included."""
+def _held(reading: Reading, *, second: bool) -> list[Expr]:
+    """Return what vanishes on the motions that a claim is about, with first or also second rates of constraints."""
     found: list[Expr] = []
     if any(map(reading.has, ("multipliers", "contact", "T"))):
         found += [f for key in _CONSTRAINTS if reading.has(key) for f in reading.equations(key)]
         q, velocities = reading.symbols("q"), [velocity(x) for x in reading.symbols("q")]
         found += [time_derivative(f, q, reading.time) for f in found if not f.has(*velocities)]
+        found += [time_derivative(f, q, reading.time) for f in found if second and f.has(*velocities)]
     return found + (list(reading.equations("restrict")) if reading.has("restrict") else [])
 
 
