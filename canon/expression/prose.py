@@ -53,7 +53,11 @@ _LEADING = frozenset((
     "tanto", "entonces", "luego", "es", "resulta", "obtenemos",
 ))  # fmt: skip
 """Words that a formula may follow."""
-_MARKS = re.compile(r"\s*(?:(?:[>✅☑✔→⟶•▪⇒⟹∴]|=>|-{1,2}>|<=>|#{1,6}(?=\s))\s*)*(?:\*\*(?=[^\W\d_]{2}))?")
+_QUOTED = r">(?!\s*[=>])(?=[^<>=!]*=)"
+"""A sign of quoted mail, which stands before an equation; before anything else it says what is greater."""
+_MARKS = re.compile(
+    rf"\s*(?:(?:{_QUOTED}|[✅☑✔→⟶•▪⇒⟹∴]|=>|-{{1,2}}>|<=>|#{{1,6}}(?=\s))\s*)*(?:\*\*(?=[^\W\d_]{{2}}))?"
+)
 _BULLET = re.compile(r"\s*[-*]\s+")
 _WORD = (
     r"(?:(?:[Ee]qn?s?|[Ss]oln?|[Aa]ns)\.(?=[ :])"

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
+from sympy.core.function import AppliedUndef
 
 from canon.exercise.question.answer import open_brackets
+from canon.exercise.question.answer_values import what_may_vanish, without_value_on
 from canon.exercise.question.continuous_answer import is_continuous
 from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.generating_answer import generating_function_of
@@ -149,6 +151,7 @@ def _implicit_canonicity(
     entries: list[Expr] = [difference[i, j] for i, j in combinations(range(2 * len(q)), 2)]
     keep = set(reading.scope.names.values()) - {*old, *new} | {reading.time}
     yield _defines_a_map(equations, old, new, tuple(keep), reading.domain)
+    yield from _valued_on_the_map(reading, equations, old, new, tuple(keep))
     if all(sp.expand(entry) == 0 for entry in entries):
         yield Regular(A, "∂(equations)/∂(new variables)", reading.domain)
         return
@@ -192,6 +195,31 @@ def _check_agreement(asked: Sequence[Sequence[Question]], deadline: Deadline) ->
             "the equations have several solutions, of which only some are canonical, and which one is near the "
             "identity was not decided; give the range of the step in the box, or equations that have one solution"
         )
+
+
+def _valued_on_the_map(
+    reading: Reading,
+    equations: Sequence[Expr],
+    old: Sequence[Symbol],
+    new: Sequence[Symbol],
+    keep: Sequence[Symbol],
+) -> Iterator[Verdict]:
+    """Yield what speaks against equations having values where they hold; a point at which they have some speaks for."""
+    open_ = [
+        u
+        for u in what_may_vanish(reading, "implicit", new)
+        if refuted_at_a_point(equations, old, new, {"": u}, reading.domain) is None
+    ]
+    if not open_:
+        return
+    try:
+        branches = on_manifold(equations, reading.domain, keep=keep, prefer=(*new, *old))
+    except Undecided:
+        if any(equation.has(AppliedUndef) for equation in equations):  # of which no point is looked at
+            return
+        raise
+    seen = [(branch.values, branch.domain) for branch in branches]
+    yield from without_value_on(reading, "implicit", new, lambda: seen, "on the map")
 
 
 def _defines_a_map(

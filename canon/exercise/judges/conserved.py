@@ -9,6 +9,8 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.judges.energy_and_force import shown_short
+from canon.exercise.judges.lagrangian import determined_motions
+from canon.exercise.question.answer_values import without_value_on
 from canon.exercise.question.continuous_answer import constants_are_continuous
 from canon.exercise.question.deadline import SIDE_SECONDS
 from canon.exercise.question.jumping_system import check_kept_at_jumps
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
 
     from canon.exercise.sheet.reading import Reading
     from canon.proof.domain.domain import Domain
+    from canon.proof.domain.verdict import Verdict
 
 __all__ = [
     "NOT_OF_THE_STATE",
@@ -33,6 +36,7 @@ __all__ = [
     "rate_along",
     "same_everywhere",
     "system_of",
+    "valued_on_motions",
 ]
 
 NOT_OF_THE_STATE = "what does not depend on the state is true of any system"
@@ -60,6 +64,7 @@ def conserved_or_not(reading: Reading) -> Iterator[Question]:
                     check_kept_at_jumps(I, system, reading.domain)
                 why = f"{I} is conserved: its rate vanishes on every motion"
                 yield Differ(Part(f"d/dt ({I})", rate), reading.domain, why)
+        yield from valued_on_motions(reading, key)
         yield Tells((same_everywhere(quantities, tuple(rates), reading.domain),), NOT_OF_THE_STATE)
 
 
@@ -111,6 +116,28 @@ def mechanical_system(reading: Reading) -> Hamiltonian | Lagrangian | None:
         forces = reading.expressions("Qnc", like="q") if reading.has("Qnc") else None
         return Lagrangian(reading.expression("L"), q, forces, reading.time)
     return None
+
+
+def valued_on_motions(reading: Reading, key: str) -> Iterator[Verdict]:
+    """Yield what speaks against answers in the state having a value on the motions, for rates that cancel in them."""
+    system = mechanical_system(reading)
+    if system is None:
+        return
+    bound = _accelerations(reading) if isinstance(system, Hamiltonian) else [*map(acceleration, system.q)]
+    yield from without_value_on(reading, key, bound, lambda: _rates_on_motions(system, reading.domain))
+
+
+def _rates_on_motions(
+    system: Hamiltonian | Lagrangian, domain: Domain
+) -> Iterator[tuple[Mapping[Symbol, Expr], Domain]]:
+    """Yield the rates that are no state variables, in terms of these, and where."""
+    if isinstance(system, Lagrangian):
+        yield from determined_motions(system.equations, system.q, domain, system.t)
+        return
+    field = dict(zip((*system.q, *system.p), system.vector_field, strict=True))
+    rate_of = rate_along(field, system.t)
+    first = {velocity(x): field[x] for x in system.q}
+    yield {**first, **{acceleration(x): rate_of(field[x])[0] for x in system.q}}, domain
 
 
 def motion_of(reading: Reading) -> dict[Symbol, Expr]:

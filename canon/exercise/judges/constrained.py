@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.judges.lagrangian import lagrangian_of
 from canon.exercise.question.answer import equations_missing
+from canon.exercise.question.answer_values import without_value_on
 from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.question import Determines, Part, Question, Same, SameEquations, Tells, decide
 from canon.expression.symbols.symbol import acceleration, velocity
@@ -114,9 +115,20 @@ def _on_every_motion(reading: Reading) -> Iterator[Question]:
             solution, branch, through = {}, motions.branch, motions.through
         parts = _parts(open_, through, functions)
         yield Same(parts, branch.domain, partial(_shown, solution if len(branches) == 1 else {}))
+        yield from _valued(reading, {**jets, **through}, branch.domain, states_are_free=bool(solution))
     free = "it follows from the constraints alone" if any(claims) else "it is true of anything"
     yield Tells(tuple(_on_any_motion(claims, rates, unknowns[: len(q)], branch) for branch in branches), free)
     yield Determines(partial(_left_open, claims, rates, system, unknowns, branches))
+
+
+def _valued(
+    reading: Reading, known: Mapping[Any, Expr], domain: Domain, *, states_are_free: bool
+) -> Iterator[Verdict]:
+    """Yield what speaks against claims having a value on motions of which something is known."""
+    q = reading.symbols("q")
+    bound = [*map(acceleration, q), *reading.symbols("multipliers")]
+    bound += [] if states_are_free else [*q, *map(velocity, q)]
+    yield from without_value_on(reading, "claim", bound, lambda: [(known, domain)])
 
 
 def _parts(

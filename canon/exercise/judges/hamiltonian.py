@@ -10,9 +10,11 @@ from canon.exercise.judges.conserved import (
     rate_along,
     same_everywhere,
     system_of,
+    valued_on_motions,
 )
 from canon.exercise.judges.lagrangian import lagrangian_of
 from canon.exercise.question.answer import stay_open
+from canon.exercise.question.answer_values import without_value_on
 from canon.exercise.question.continuous_answer import constants_are_continuous
 from canon.exercise.question.jumping_system import check_kept_at_jumps, check_motion_at_jumps
 from canon.exercise.question.question import Determines, Part, Question, Regular, Same, Tells, wrong_variables
@@ -65,6 +67,8 @@ def hamilton_equations(reading: Reading) -> Iterator[Question]:
             for z, rate, right, key in zip((*q, *p), claimed, system.vector_field, keys, strict=True)
         )
         yield Same(parts, reading.domain, lambda: system.vector_field)
+        for key in ("q_dot", "p_dot"):
+            yield from valued_on_motions(reading, key)
     if reading.has("solution"):
         yield from _solution(reading, system)
 
@@ -84,6 +88,8 @@ def _solution(reading: Reading, system: Hamiltonian) -> Iterator[Question]:
         Part(f"the equation of {z}", motion[z].diff(system.t), substitute(rate, motion)) for z, rate in rates
     )
     yield Same(tuple(parts), domain)
+    known = {**motion, **{velocity(x): motion[x].diff(system.t) for x in system.q}}
+    yield from without_value_on(reading, "solution", tuple(known), lambda: [(known, domain)])
     check_motion_at_jumps(motion, system, domain, reading.domain)
     yield from motion_is_continuous(motion, domain, [system.H], system.t, velocities=False)
 
@@ -100,7 +106,13 @@ def constant_of_motion(reading: Reading) -> Iterator[Question]:
         yield Same((Part("dI/dt", *rate_of(I), through=branch.values),), branch.domain)
         check_kept_at_jumps(there, system, branch.domain)
         yield from constants_are_continuous(there, (*rates, t), branch.domain, system_of(reading))
-    trivial = tuple(same_everywhere((I,), tuple(rates), b.domain, b.values) for b in branches)
+    yield from valued_on_motions(reading, "I")
+    moved = _moved_in_any_way(reading) if restrictions else {}
+    trivial = (
+        tuple(Same((Part("dI/dt", *rate_along(moved, t)(I), through=b.values),), b.domain) for b in branches)
+        if moved
+        else tuple(same_everywhere((I,), tuple(rates), b.domain, b.values) for b in branches)
+    )
     yield Tells(trivial, "it follows from `restrict` alone" if restrictions else NOT_OF_THE_STATE)
     if motions.through:
         seen = tuple(same_everywhere((substitute(I, b.values),), tuple(rates), b.domain) for b in branches)
@@ -115,6 +127,15 @@ def _restricted(restrictions: Sequence[Expr], motions: Motions) -> list[Branch]:
         Branch({s: substitute(f, b.values) for s, f in motions.through.items()} | dict(b.values), b.domain)
         for b in branches
     ]
+
+
+def _moved_in_any_way(reading: Reading) -> dict[Symbol, Expr]:
+    """Return the rates of coordinates and velocities whatever moves them; none where no Lagrangian is given.
+
+    Where ẋ = 0, d(x³)/dt = 3 x² ẋ vanishes in any system: only what takes the accelerations of this one says something.
+    """
+    q = reading.symbols("q") if reading.has("L") else ()
+    return {s: rate(x) for x in q for s, rate in ((x, velocity), (velocity(x), acceleration))}
 
 
 def equality(reading: Reading) -> Iterator[Question]:

@@ -171,9 +171,15 @@ def _point_transformation(reading: Reading) -> Question:
     """Q = Q(q, t) with a regular ∂Q/∂q: then Lagrange's equations of every L keep their form."""
     if not reading.has("Q"):
         reading.fault("Q", "missing; give the new coordinates as functions of the old ones")
+    if reading.has("P"):
+        reading.fault("P", "can't stand here: Lagrange's equations are about Q alone; leave it out")
     q, Q = reading.symbols("q"), reading.expressions("Q", like="q")
-    if any(f.has(*(rate(x) for x in q for rate in (velocity, acceleration))) for f in Q):
-        why = "new coordinates that hold velocities are no point transformation: the equations get third derivatives"
+    moving = (*(rate(x) for x in q for rate in (velocity, acceleration)), *reading.symbols("p"))
+    if any(f.has(*moving) for f in Q):
+        why = (
+            "new coordinates that hold velocities or momenta are no point transformation: the equations get third "
+            "derivatives"
+        )
         return Verdict(Status.FAILS, "a point transformation", "structure", feedback=why)
     jacobian = sp.Matrix([[f.diff(x) for x in q] for f in Q])
     if jacobian.has(*PIECED) and not without_pieces(jacobian.flat(), reading.domain):

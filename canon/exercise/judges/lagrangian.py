@@ -7,6 +7,7 @@ Euler's gyroscopic terms join in: the torque is I ω̇ + ω × I ω, so that of 
 
 from __future__ import annotations
 
+from contextlib import suppress
 from itertools import combinations
 from typing import TYPE_CHECKING, cast
 
@@ -14,6 +15,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.question.answer import stay_open
+from canon.exercise.question.answer_values import what_may_vanish, without_value_on
 from canon.exercise.question.continuous_answer import is_continuous
 from canon.exercise.question.given_bodies import given_bodies
 from canon.exercise.question.jumping_system import check_absent, check_gauge_term
@@ -29,11 +31,12 @@ from canon.exercise.question.question import (
 )
 from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
 from canon.expression.symbols.user_input import counted
-from canon.mechanics.algebra.constraint_manifold import transported
-from canon.mechanics.algebra.linear import solve_affine
+from canon.frozen_mapping import FrozenMapping
+from canon.mechanics.algebra.constraint_manifold import EmptyDomainError, transported
+from canon.mechanics.algebra.linear import SingularMatrixError, is_regular, solve_affine
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.lagrange.appell import GibbsAppell
-from canon.mechanics.lagrange.hidden_constraints import motions_of
+from canon.mechanics.lagrange.hidden_constraints import all_motions, motions_of
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.reduction.routh import routhian as routh
 from canon.proof.continuity.smooth import PIECED
@@ -48,9 +51,11 @@ if TYPE_CHECKING:
     from sympy.logic.boolalg import Boolean
 
     from canon.exercise.sheet.reading import Reading
+    from canon.proof.domain.verdict import Verdict
 
 __all__ = [
     "appell_system",
+    "determined_motions",
     "dissipative",
     "euler_lagrange",
     "gibbs_appell",
@@ -93,6 +98,7 @@ def _energy_rate(reading: Reading, lagrangian: Lagrangian, rate: Expr) -> Iterat
     right = substitute(rate, through)
     shown = right if rate.has(*accelerations) else rate
     yield Same((Part("dE/dt", claimed, right, through, "energy_rate"),), domain, lambda: shown)
+    yield from _valued_on_the_motion(reading, "energy_rate", lagrangian)
     written = [a for a in accelerations if claimed.has(a)]
     yield Determines(lambda: (f"dE/dt stays open: it is written with {written[0]}",) if written else ())
 
@@ -132,6 +138,7 @@ def routhian(reading: Reading) -> Iterator[Question]:
             transported(reading.domain, through),
             lambda: routhian_in_momenta(lagrangian, velocities, through, sign),
         )
+        yield from without_value_on(reading, "R", momenta, lambda: [(through, reading.domain)])
     if reading.has("claim"):
         conserved = tuple(time_derivative(p, q, t) for p in through.values())
         written = reading.equations("claim")
@@ -147,6 +154,7 @@ def routhian(reading: Reading) -> Iterator[Question]:
             through,
             time=reading.time,
         )
+        yield from _valued_on_the_motion(reading, "claim", lagrangian, through)
         yield more_than_zero(written, reading.domain)
 
 
@@ -240,6 +248,7 @@ def same_motion(reading: Reading, lagrangian: Lagrangian) -> Iterator[Question]:
     right = lagrangian.equations
     claimed = reading.equations("claim")
     yield SameEquations(claimed, right, unknowns, reading.domain, lambda: right, claimed, time=reading.time)
+    yield from _valued_on_the_motion(reading, "claim", lagrangian)
     yield more_than_zero(claimed, reading.domain)
 
 
@@ -252,6 +261,46 @@ def _on_the_motion(
     motions = motions_of(lagrangian, domain)
     held = {s: value for s, value in motions.through.items() if any(side.has(s) for side in sides)}
     return held, motions.branch.domain
+
+
+def determined_motions(
+    equations: Sequence[Expr], q: Sequence[Symbol], domain: Domain, t: Symbol
+) -> Iterator[tuple[dict[Symbol, Expr], Domain]]:
+    """Yield what equations of motion determine, in terms of what is free, and where; nothing without motions.
+
+    Raises
+    ------
+    Undecided
+        Where that could not be told.
+    """
+    unknowns = tuple(acceleration(x) for x in q)
+    try:
+        yield solve_affine(equations, unknowns, domain), domain
+    except SingularMatrixError:
+        with suppress(EmptyDomainError):
+            motions = all_motions(equations, (), q, unknowns, domain, t)
+            yield motions.through, motions.branch.domain
+
+
+def _valued_on_the_motion(
+    reading: Reading, key: str, lagrangian: Lagrangian, through: Mapping[Symbol, Expr] = FrozenMapping({})
+) -> Iterator[Verdict]:
+    """Yield what speaks against answers having a value on the motions, where these determine what may vanish in them.
+
+    At a regular mass matrix states are free, and accelerations alone are determined, with what is put in.
+    """
+    states = (*lagrangian.q, *lagrangian.velocities)
+    bound = (*through, *(acceleration(x) for x in lagrangian.q))
+    if what_may_vanish(reading, key, states) and not is_regular(lagrangian.mass_matrix, reading.domain).holds:
+        bound += states
+
+    def motions() -> Iterator[tuple[Mapping[Symbol, Expr], Domain]]:
+        for found, domain in determined_motions(
+            lagrangian.equations, lagrangian.q, reading.domain, lagrangian.t
+        ):
+            yield {**found, **{p: substitute(value, found) for p, value in through.items()}}, domain
+
+    yield from without_value_on(reading, key, bound, motions)
 
 
 def _is_affine_in_velocities(f: Expr, q: Sequence[Symbol], domain: Domain) -> Iterator[Question]:
@@ -292,15 +341,18 @@ def gibbs_appell(reading: Reading) -> Iterator[Question]:
     """S has the right derivatives by the accelerations, and the equations are Appell's."""
     appell = appell_system(reading)
     kinematics, domain = appell.kinematics, reading.domain
+    natural = kinematics.u == tuple(velocity(x) for x in appell.q)
     if reading.has("S"):
         S = kinematics.along(reading.expression("S"))
         parts = (Part(f"∂S/∂{a}", S.diff(a), s) for a, s in zip(appell.u_dot, appell.slopes, strict=True))
         yield Same(tuple(parts), domain)
         yield is_continuous(S, (*appell.q, *kinematics.u, *appell.u_dot, kinematics.t), domain, "S")
+        if not natural:
+            rates = tuple(kinematics.through)
+            yield from without_value_on(reading, "S", rates, lambda: [(kinematics.through, domain)])
     if reading.has("claim"):
         written = reading.equations("claim")
         claims = tuple(kinematics.along(claim) for claim in written)
-        natural = kinematics.u == tuple(velocity(x) for x in appell.q)
         yield SameEquations(
             claims,
             appell.equations,
@@ -310,13 +362,27 @@ def gibbs_appell(reading: Reading) -> Iterator[Question]:
             written,
             {} if natural else kinematics.through,
         )
+        determined = (*({} if natural else kinematics.through), *appell.u_dot)
+        yield from without_value_on(reading, "claim", determined, lambda: _motions_of_bodies(appell, domain))
         yield more_than_zero(claims, domain)
+
+
+def _motions_of_bodies(appell: GibbsAppell, domain: Domain) -> Iterator[tuple[Mapping[Symbol, Expr], Domain]]:
+    """Yield q̇, q̈ and u̇ on the motions, in terms of q, u and t."""
+    try:
+        found = solve_affine(appell.equations, appell.u_dot, domain)
+    except SingularMatrixError:  # what S does not determine stays free
+        found = {}
+    rates = {rate: substitute(value, found) for rate, value in appell.kinematics.through.items()}
+    yield {**rates, **found}, domain
 
 
 def appell_system(reading: Reading) -> GibbsAppell:
     """Return the bodies of a claim in its quasi-velocities."""
     if reading.has("quasi") and not reading.has("q_dot"):
         reading.fault("q_dot", "missing; say what each velocity is in terms of the quasi-velocities")
+    if reading.has("q_dot") and not reading.has("quasi"):
+        reading.fault("quasi", "missing; name the quasi-velocities in which q_dot is given")
     return GibbsAppell(
         tuple(body for _, body in given_bodies(reading)),
         reading.symbols("q"),

@@ -16,12 +16,13 @@ from canon.exercise.judges.constrained import bound_by, is_one_of
 from canon.exercise.judges.energy_and_force import shown_short
 from canon.exercise.judges.lagrangian import lagrangian_of
 from canon.exercise.question.answer import stay_open
+from canon.exercise.question.answer_values import what_may_vanish, without_value_on
 from canon.exercise.question.deadline import SIDE_SECONDS, Deadline
 from canon.exercise.question.implicit_point import refuted_at_a_point
 from canon.exercise.question.question import TELLING, Determines, Part, Question, Same, Stated, decide, fails
 from canon.exercise.sheet.kept_parses import parsed
 from canon.expression.as_written import as_written
-from canon.expression.symbols.symbol import Rate, velocity
+from canon.expression.symbols.symbol import Rate, acceleration, velocity
 from canon.expression.text.open_readings import is_angle
 from canon.mechanics.algebra.constraint_manifold import EmptyDomainError, check_not_empty, on_manifold
 from canon.mechanics.algebra.solve_for_symbol import named
@@ -53,16 +54,23 @@ def reaction(reading: Reading) -> Iterator[Question]:
     """Multipliers or generalized forces of constraint are what is claimed, on every motion that is meant."""
     q, multipliers = reading.symbols("q"), reading.symbols("multipliers")
     constraints = reading.equations("constraints")
-    if not reading.has("values") and _force_is_the_rest(reading, constraints, multipliers):
+    bound = (*map(acceleration, q), *multipliers)
+    risky = any(what_may_vanish(reading, key, bound) for key in ("values", "force"))
+    if not (reading.has("values") or risky) and _force_is_the_rest(reading, constraints, multipliers):
         check_not_empty(constraints, q, reading.domain, reading.time)
         yield Verdict(Status.HOLDS, "the forces of constraint", "exact")
         yield Determines(lambda: stay_open(_held(reading, multipliers)))
         return
+    if reading.has("integrals"):  # which bind the state too
+        bound += (*q, *map(velocity, q))
     values = reading.table("values") if reading.has("values") else {}
     claimed = reading.expressions("force", like="q") if reading.has("force") else ()
     for motion in _motions(reading, constraints, multipliers, (*values.values(), *claimed)):
         parts = (*_of_multipliers(reading, motion, values), *_of_forces(motion, q, claimed))
         yield Same(parts, motion.branch.domain, lambda parts=parts: _answer(parts))
+        seen = [({**motion.jets, **motion.branch.values, **motion.solution}, motion.branch.domain)]
+        for key in ("values", "force"):
+            yield from without_value_on(reading, key, bound, lambda seen=seen: seen)
     left = _held(reading, multipliers) if claimed else [s for s in multipliers if s.name not in values]
     yield Determines(lambda: stay_open(left))
 

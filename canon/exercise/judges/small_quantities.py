@@ -15,6 +15,8 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.exercise.judges.energy_and_force import shown_short
+from canon.exercise.judges.lagrangian import determined_motions
+from canon.exercise.question.answer_values import without_value_on
 from canon.exercise.question.deadline import Deadline
 from canon.exercise.question.question import (
     Determines,
@@ -146,16 +148,20 @@ def linearisation(reading: Reading) -> Iterator[Question]:
     yield at_rest
     deviation = {x: Coordinate(x.name, real=True) for x in q}
     linear = tuple(exchanged(_linear(e, q, rates, place, domain), deviation) for e in equations)
-    written = tuple(exchanged(e, deviation) for e in _of_deviations(reading).equations("claim"))
+    free = _of_deviations(reading)
+    written = tuple(exchanged(e, deviation) for e in free.equations("claim"))
     unknowns = tuple(acceleration(x) for x in q)
     shown_linear = partial(map, shown_short, linear)
     yield SameEquations(
         written, linear, unknowns, domain, lambda: tuple(shown_linear()), written, time=reading.time
     )
+    small = tuple(deviation.values())
+    motions = partial(determined_motions, linear, small, domain, reading.time)
+    yield from without_value_on(free, "claim", (*small, *rates), motions)
     bends = tuple(
         Part(f"equation {i} beyond first order", e.diff(a, b))
         for i, e in enumerate(written, 1)
-        for a, b in combinations_with_replacement((*deviation.values(), *rates), 2)
+        for a, b in combinations_with_replacement((*small, *rates), 2)
     )
     yield Same(bends, domain, None, lambda part: f"{part.name}: a claimed equation is not linear")
     yield more_than_zero(written, domain)

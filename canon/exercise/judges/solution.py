@@ -15,6 +15,7 @@ from canon.exercise.judges.conserved import mechanical_system, motion_of
 from canon.exercise.judges.energy_and_force import shown_short
 from canon.exercise.judges.invariance import is_instead
 from canon.exercise.question.answer import stay_open
+from canon.exercise.question.answer_values import without_value_on
 from canon.exercise.question.continuous_answer import is_continuous
 from canon.exercise.question.jumping_system import check_has_no_jumps, check_motion_at_jumps
 from canon.exercise.question.question import Determines, Part, Question, Regular, Same, fails
@@ -66,6 +67,7 @@ def _of_functions(reading: Reading) -> Iterator[Question]:
     domain = transported(reading.domain, motion)
     parts = tuple(Part(name, substitute(e, motion)) for name, e in _equations(reading, motion))
     yield Same(parts, domain, _no_answer, _left_over)
+    yield from without_value_on(reading, "solution", tuple(motion), lambda: [(motion, domain)])
     if not reading.has("equations"):
         check_motion_at_jumps(motion, mechanical_system(reading), domain, reading.domain)
     yield from _initial(reading, {x: motion[x] for x in state if x in motion}, t)
@@ -131,6 +133,7 @@ def _of_rates(reading: Reading) -> Iterator[Question]:
     domain = transported(reading.domain, motion)
     parts = tuple(Part(name, substitute(e, motion)) for name, e in _equations(reading, motion))
     yield Same(parts, domain, _no_answer, _left_over)
+    yield from without_value_on(reading, "rates", tuple(motion), lambda: [(motion, domain)])
     if not reading.has("equations"):
         check_has_no_jumps(mechanical_system(reading), reading.domain)
     for x, rate in rates.items():

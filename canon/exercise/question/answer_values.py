@@ -3,34 +3,38 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
+from canon.exercise.question.deadline import SIDE_SECONDS
 from canon.exercise.sheet.kept_parses import parsed
 from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.kinds import KINDS
 from canon.expression.as_written import as_written
-from canon.expression.symbols.symbol import Coordinate, time_derivative, velocity
+from canon.expression.symbols.symbol import Coordinate, acceleration, time_derivative, velocity
 from canon.expression.text.tokens import LanguageError
 from canon.mechanics.algebra.constraint_manifold import EmptyDomainError, inhabited, on_manifold
 from canon.mechanics.algebra.substitution import substitute
 from canon.proof.definedness.definedness import lack_beside, lack_of_value
 from canon.proof.definedness.formula_around import put_in
 from canon.proof.definedness.hazards import hazards
+from canon.proof.domain.domain import Domain
 from canon.proof.domain.verdict import Evidence, Status, Undecided, Verdict
 from canon.proof.trees.anatomy import anatomy
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-    from sympy import Expr, Symbol
+    from sympy import Basic, Expr, Symbol
 
     from canon.exercise.question.deadline import Deadline
     from canon.exercise.sheet.reading import Reading
     from canon.proof.definedness.definedness import Lack
+    from canon.proof.definedness.hazards import Hazard
 
-__all__ = ["without_value"]
+__all__ = ["what_may_vanish", "without_value", "without_value_on"]
 
 SHARE = 0.4
 """Part of the time of a claim that may be spent here."""
@@ -70,10 +74,76 @@ def without_value(reading: Reading, deadline: Deadline) -> Iterator[Verdict]:
             [_seen(f, following) for k, f in answers.items() if k != key] if reading.kind.two_sided else []
         )
         lack = lack_beside(_seen(answer, following), [*given, *other], reading.domain, until)
+        lack = lack or _lack_on_the_map(answer, following, until)
         if lack is not None:
             open_ = not lack.proved or _is_one_of_several(reading)
             yield _open(lack, key) if open_ else _fails(lack, key)
     yield from _without_value_on_motions(reading, answers, until)
+
+
+def _lack_on_the_map(answer: Expr, following: Mapping[Symbol, Expr], until: float) -> Lack | None:
+    """Return that an answer has a value nowhere where some variables follow from others, if that is proved."""
+    if not _risks(answer, tuple(following)):
+        return None
+    lack = lack_of_value(_seen(answer, following), Domain(), until)
+    return lack if lack is not None and lack.proved else None
+
+
+def without_value_on(
+    reading: Reading,
+    key: str,
+    bound: Sequence[Symbol],
+    motions: Callable[[], Iterable[tuple[Mapping[Any, Expr], Domain]]],
+    there: str = "on the motions",
+) -> Iterator[Verdict]:
+    """Yield what speaks against answers having values on the motions, nothing if they have.
+
+    E²/E = 0 is true of no motion: exactly where E vanishes the quotient has no value. Cancelled it would be another
+    equation, so that answers are looked at as they were written.
+
+    Parameters
+    ----------
+    reading, key
+        The claim, and where its answers stand.
+    bound
+        What motions determine, such as accelerations; answers that have a value whatever these are, are passed over.
+    motions
+        Yields what is determined in terms of what is free, and where; called only where it is needed.
+    there
+        In words, where that is.
+    """
+    risky = [(where, f, risks) for where, f in _written_under(reading, key) if (risks := _risks(f, bound))]
+    if not risky:
+        return
+    until = time.monotonic() + SIDE_SECONDS
+    for values, domain in motions():
+        for where, f, risks in risky:
+            if lack := lack_of_value(_seen(f, values), domain, until):
+                said = replace(lack, why=str(risks[0])) if lack.proved and len(risks) == 1 else lack
+                yield (_fails if lack.proved else _open)(said, f"{where}, {there},")
+
+
+def what_may_vanish(reading: Reading, key: str, bound: Sequence[Symbol]) -> list[Expr]:
+    """Return what stands below and in logarithms of answers, as they were written, and holds what motions determine.
+
+    Parameters
+    ----------
+    reading, key, bound
+        As for :func:`without_value_on`.
+    """
+    return [risk.argument for _, f in _written_under(reading, key) for risk in _risks(f, bound)]
+
+
+def _risks(f: Expr, bound: Sequence[Symbol]) -> list[Hazard]:
+    found = hazards(anatomy([f]).parts)
+    return [risk for risk in found if not risk.argument.free_symbols.isdisjoint(bound)]
+
+
+def _written_under(reading: Reading, key: str) -> Iterator[tuple[str, Expr]]:
+    """Yield the expressions under a key as they are written, but for those in whose place others are read."""
+    for where, f in () if reading.at else _written(reading):
+        if _outer(where) == key and where not in reading.instead:
+            yield where, f
 
 
 def _without_value_on_motions(
@@ -81,12 +151,14 @@ def _without_value_on_motions(
 ) -> Iterator[Verdict]:
     """Yield FAILS for answers that have a value nowhere on the motions that satisfy the constraints."""
     risky = {key: f for key, f in answers.items() if hazards(anatomy([f]).parts)}
-    held = _held(reading) if risky else []
+    q = reading.symbols("q") if reading.is_names("q") else ()
+    accelerations = [a for a in map(acceleration, q) if any(f.has(a) for f in risky.values())]
+    held = _held(reading, second=bool(accelerations)) if risky else []
     if not held:
         return
-    velocities = [velocity(x) for x in reading.symbols("q")] if reading.has("q") else []
+    prefer = [*map(velocity, q), *accelerations]
     try:
-        branches = inhabited(on_manifold(held, reading.domain, keep=(reading.time,), prefer=velocities))
+        branches = inhabited(on_manifold(held, reading.domain, keep=(reading.time,), prefer=prefer))
     except (Undecided, EmptyDomainError):  # the judge of the kind says so
         return
     for key, f in risky.items():
@@ -96,21 +168,23 @@ def _without_value_on_motions(
             yield _fails(nowhere[0], f"{key}, where the constraints hold,")
 
 
-def _held(reading: Reading) -> list[Expr]:
-    """Return what vanishes on the motions that a claim is about, the rates of constraints included."""
+def _held(reading: Reading, *, second: bool) -> list[Expr]:
+    """Return what vanishes on the motions that a claim is about, with first or also second rates of constraints."""
     found: list[Expr] = []
-    if reading.has("multipliers") or reading.has("contact"):
+    if any(map(reading.has, ("multipliers", "contact", "T"))):
         found += [f for key in _CONSTRAINTS if reading.has(key) for f in reading.equations(key)]
         q, velocities = reading.symbols("q"), [velocity(x) for x in reading.symbols("q")]
         found += [time_derivative(f, q, reading.time) for f in found if not f.has(*velocities)]
+        found += [time_derivative(f, q, reading.time) for f in found if second and f.has(*velocities)]
     return found + (list(reading.equations("restrict")) if reading.has("restrict") else [])
 
 
-def _seen(f: Expr, following: Mapping[Symbol, Expr]) -> Expr:
-    """Return an expression in the free variables, nothing cancelled where that can be avoided."""
-    if f.has(sp.Derivative, sp.Subs):
-        return substitute(f, following)
-    return put_in(f, dict(following.items()))
+def _seen(f: Expr, following: Mapping[Any, Expr]) -> Expr:
+    """Return an expression in the free variables, with nothing cancelled."""
+    inside: dict[Basic, Basic] = {
+        part: substitute(part, following) for part in f.atoms(sp.Derivative, sp.Subs)
+    }
+    return put_in(f, {**inside, **following})
 
 
 def _fails(lack: Lack, key: str) -> Verdict:
@@ -134,10 +208,15 @@ def _is_one_of_several(reading: Reading) -> bool:
 
 
 def _is_answer(reading: Reading, key: str) -> bool:
-    outer = key.partition(".")[0].partition("[")[0]
+    outer = _outer(key)
     inner_is_given = outer == "pairs" and not key.endswith(".value")
     kind = KINDS[reading.claim.kind]
     return outer in (*kind.answer, *kind.claimed_too) and not inner_is_given
+
+
+def _outer(where: str) -> str:
+    """Return the key of a claim under which something stands."""
+    return where.partition(".")[0].partition("[")[0]
 
 
 def _written(reading: Reading) -> Iterator[tuple[str, Expr]]:

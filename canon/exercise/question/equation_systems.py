@@ -6,9 +6,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import sympy as sp
+from sympy.core.function import AppliedUndef
 
 from canon.expression.symbols.symbol import Coordinate
-from canon.mechanics.algebra.substitution import substitute, symbols_of
+from canon.mechanics.algebra.substitution import exchanged, substitute, symbols_of
 from canon.mechanics.lagrange.hidden_constraints import all_motions
 from canon.proof.domain.verdict import Status, Undecided, Verdict
 from canon.proof.equivalence import NotAffineError, Stray, not_affine, systems_compared, without_solution
@@ -50,26 +51,53 @@ def same_equations(
     """
     off = off_kinks((*claimed, *right), domain)
     claimed, right = (tuple(map(off.seen, system)) for system in (claimed, right))
-    for i, equation in enumerate(claimed, 1 - before):
+    apart = [(i, part) for i, equation in enumerate(claimed) for part in _real_equations(equation)]
+    numbers, claimed = [i - before for i, _ in apart], tuple(part for _, part in apart)
+    for i, equation in zip(numbers, claimed, strict=True):
         slopes = sp.Matrix([[equation.diff(a).diff(b) for b in unknowns] for a in unknowns])
         affine = vanishes_off_kinks(slopes, domain, deadline.left)
         if not affine.holds:
-            why = f"equation {i} is not affine in {_listed(unknowns)}"
+            why = f"equation {i + 1} is not affine in {_listed(unknowns)}"
             return replace(affine, question=AFFINE, residual=equation, feedback=why)
 
     def said(stray: Stray) -> str:
-        return _with_formula(_does_not_follow(stray, before), f"{stray.equation} = 0")
+        return _with_formula(_does_not_follow(stray, numbers), f"{stray.equation} = 0")
 
     try:
         verdict = systems_compared(claimed, right, unknowns, domain, deadline.left, said)
     except NotAffineError as error:  # |u| + 1 = 0 has no second derivative off its kink
-        return Verdict(Status.FAILS, AFFINE, "exact", feedback=_not_affine(error, before))
+        return Verdict(Status.FAILS, AFFINE, "exact", feedback=_not_affine(error, numbers))
     if verdict.holds and without_solution(right, unknowns, domain):
         lower = _equations_of_lower_order(claimed, right, unknowns, domain, deadline, said)
         if lower.fails and not _have_other_motions(claimed, right, unknowns, domain, time):
             return Verdict(Status.HOLDS, lower.question, "exact")
         return lower
     return verdict
+
+
+def _real_equations(equation: Expr) -> tuple[Expr, ...]:
+    """Return the real equations that one with i says: m (ẍ + i ÿ) + k (x + i y) = 0 says two.
+
+    Raises
+    ------
+    Undecided
+        Where its real and imaginary parts are not known.
+
+    Examples
+    --------
+    >>> x, y = sp.symbols("x y", real=True)
+    >>> _real_equations(x + sp.I * y), _real_equations(x - y)
+    ((x, y), (x - y,))
+    """
+    if not equation.has(sp.I):
+        return (equation,)
+    arbitrary = equation.atoms(AppliedUndef, sp.Derivative, sp.Subs)
+    jets: dict[Expr, Expr] = {f: sp.Dummy(real=True) for f in arbitrary if not f.has(sp.I)}
+    parts = exchanged(equation, jets).as_real_imag()
+    if any(part.has(sp.I, sp.re, sp.im, sp.arg, sp.conjugate) for part in parts):
+        raise Undecided("an equation holds i in a way that was not taken apart; claim both of its parts")
+    functions = {symbol: f for f, symbol in jets.items()}
+    return tuple(exchanged(part, functions) for part in parts if part != 0) or (sp.S.Zero,)
 
 
 def _have_other_motions(
@@ -131,16 +159,16 @@ def _equations_of_lower_order(
     raise Undecided("the equations bind the state in a way that is not affine; solve them for the velocities")
 
 
-def _does_not_follow(stray: Stray, before: int) -> str:
+def _does_not_follow(stray: Stray, numbers: Sequence[int]) -> str:
     """Say which equation does not follow, counted as the claim does."""
     if stray.system == 0:
-        return f"equation {stray.number + 1 - before} of the claim does not follow from those of motion"
+        return f"equation {numbers[stray.number] + 1} of the claim does not follow from those of motion"
     return f"equation {stray.number + 1} of motion does not follow from the claimed ones"
 
 
-def _not_affine(error: NotAffineError, before: int) -> str:
+def _not_affine(error: NotAffineError, numbers: Sequence[int]) -> str:
     if error.which == "first":
-        which = f"equation {error.number + 1 - before}"
+        which = f"equation {numbers[error.number] + 1}"
     else:
         which = f"equation {error.number + 1} of motion"
     sentence, _, formula = not_affine(error.equation).partition(": ")

@@ -19,7 +19,7 @@ from canon.exercise.sheet.kinds import KINDS, kind_of
 from canon.expression.text.tokens import GREEK
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from canon.exercise.sheet.kind import Kind
 
@@ -123,6 +123,7 @@ def _faults(kind: str, keys: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         return
     known = {**COMMON, **wanted.shapes}
     yield from _missing_or_double(kind, wanted, keys)
+    yield from _of_two_ways(wanted, keys)
     yield from _empty_answer(wanted, known, keys)
     for key, value in keys.items():
         if key not in known:
@@ -147,6 +148,44 @@ def _missing_or_double(kind: str, wanted: Kind, keys: Mapping[str, Any]) -> Iter
     if wanted.exclusive and len(complete) > 1:
         groups = " and ".join(" with ".join(group) for group in complete)
         yield complete[1][-1], f"{groups} both say what it is about; leave one out"
+    for group in wanted.one_of if complete else ():
+        yield from _half_claimed(group, complete, wanted, keys)
+
+
+def _half_claimed(
+    group: Sequence[str], complete: Sequence[Sequence[str]], wanted: Kind, keys: Mapping[str, Any]
+) -> Iterator[tuple[str, str]]:
+    """Yield what is lacking of a group of which a part is claimed beside another whole one, and would not be judged."""
+    lacking = [key for key in group if key not in keys]
+    told = {key for other in (*complete, *wanted.ways) for key in other}
+    given = [key for key in group if key in keys and key in wanted.answer and key not in told]
+    if lacking and given:
+        yield lacking[0], f"missing; {_listed(given)} would be passed over without it"
+
+
+def _of_two_ways(wanted: Kind, keys: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Yield keys that do not go with others, as they belong to another way of saying the same thing.
+
+    They would be passed over in silence, or names that they declare taken for constants.
+    """
+    given = {key for way in wanted.ways for key in way if key in keys}
+    best = max(wanted.ways, key=lambda way: (len(given & {*way}), -len(way)), default=())
+    strays = [key for key in keys if key in given and key not in best]
+    if strays:
+        fits = [key for key in best if key in keys]
+        yield strays[0], f"{_listed(strays)} can't stand beside {_listed(fits)}; leave one or the other out"
+
+
+def _listed(keys: Sequence[str]) -> str:
+    """Return keys in words.
+
+    Examples
+    --------
+    >>> _listed(["q"]), _listed(["q", "p", "H"])
+    ('q', 'q, p and H')
+    """
+    *others, last = keys
+    return f"{', '.join(others)} and {last}" if others else last
 
 
 def _empty_answer(

@@ -94,6 +94,8 @@ class Kind:
         Alternatives: at least one whole group of keys must be there.
     exclusive
         Whether the alternatives say the same thing, so that only one of them can be there.
+    ways
+        Groups of keys that say the same thing in other ways: those of one group are there, and none of another.
     answer
         The keys where the answer stands; all others say what is asked.
     claimed_too
@@ -142,6 +144,7 @@ class Kind:
     optional: Mapping[str, Shape] = field(default_factory=lambda: MappingProxyType({}))
     one_of: tuple[tuple[str, ...], ...] = ()
     exclusive: bool = False
+    ways: tuple[tuple[str, ...], ...] = ()
     answer: tuple[str, ...] = ()
     components: tuple[str, ...] = ()
     several: tuple[str, ...] = ()

@@ -34,6 +34,7 @@ _CANONICITY = Kind(
     {"Q": _TS, "P": _TS, "valence": _T, **_NEW, "implicit": _TS},
     one_of=(("Q", "P"), ("new_q", "new_p", "implicit")),
     exclusive=True,
+    ways=(("Q", "P"), ("new_q", "new_p", "implicit")),
     answer=("Q", "P", "valence", "implicit"),
     unknowns="the map",
     derived=True,
@@ -57,6 +58,8 @@ _GENERATING = Kind(
     diagnoses=(*_OF_F, *_CHANGED, *_AT_LAST),
 )
 _MOTION = {**_PHASE, "H": _T, "L": _T, "x": _N, "X": _TS}
+_SYSTEMS = (("q", "p", "H"), ("q", "L"), ("x", "X"))
+_WITH_FORCES = (("q", "L", "Qnc"), ("q", "p", "H"), ("x", "X"))
 _CONSTRAINED = Kind(
     "constrained.nonholonomic",
     {**_LAGRANGE, "constraints": _TS, "multipliers": _N, "claim": _TS},
@@ -169,6 +172,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             {"x": _N, "form": _TS, "claim": _T, **_PHASE, "Q": _TS, "P": _TS, "factor": _T},
             one_of=(("x", "form", "claim"), ("q", "p", "Q", "P", "factor")),
             exclusive=True,
+            ways=(("x", "form", "claim"), ("q", "p", "Q", "P", "factor")),
             answer=("claim", "factor"),
             unknowns="the covariant, or the factor",
             claimed_too=("Q", "P"),
@@ -196,8 +200,9 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             "hamiltonian.constant_of_motion",
             {"I": _T},
             {**_PHASE, "H": _T, "L": _T, "x": _N, "X": _TS, "restrict": _TS},
-            one_of=(("q", "p", "H"), ("q", "L"), ("x", "X")),
+            one_of=_SYSTEMS,
             exclusive=True,
+            ways=_SYSTEMS,
             answer=("I",),
             unknowns="one constant of the motion",
             varying=("I",),
@@ -286,6 +291,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             {},
             {**_MOTION, "conserved": _TS, "not_conserved": _TS, "Qnc": _TS},
             one_of=(("conserved",), ("not_conserved",)),
+            ways=_WITH_FORCES,
             answer=("conserved", "not_conserved"),
             unknowns="what is told of each quantity that is listed",
         ),
@@ -303,6 +309,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
                 "constants": _N,
             },
             one_of=(("solution",), ("rates",)),
+            ways=(*_WITH_FORCES, ("q", "equations")),
             answer=("solution", "rates"),
             unknowns="the general solution (`constants`), or the one with given initial values of the whole state",
             repaired=("solution", "rates"),
@@ -328,6 +335,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType(
             {"q": _N, "of": Shape.WORD},
             {"p": _N, "Q": _TS, "P": _TS, **_NEW, "F": _T, "type": Shape.NUMBER},
             one_of=(("Q",), ("new_q", "new_p", "F", "type")),
+            ways=(("Q", "P"), ("new_q", "new_p", "F", "type")),
             answer=("Q", "P", "F"),
             unknowns="the map",
         ),
@@ -402,4 +410,5 @@ def kind_of(kind: str, keys: Mapping[str, Any]) -> Kind:
         optional=inner.optional,
         one_of=inner.one_of,
         exclusive=inner.exclusive,
+        ways=inner.ways,
     )

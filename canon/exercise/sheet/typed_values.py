@@ -36,6 +36,7 @@ _OR = re.compile(
     r"\\(?:text|textrm|mbox|mathrm)\s*\{[\s~]*(?:or|and)[\s~]*\}|\\(?:lor|vee)(?![A-Za-z])|\bor\b|∨|(?<=\s)\|\|(?=\s)"
 )
 _NEARLY = re.compile(r"\\(?:approx|simeq|in)(?![A-Za-z])|[≈≃≅≐∈]|~=|(?<!\\)(?<=\s)~(?=\s*[-0-9.])|^\s*~")
+_IN_BRACKETS = re.compile(r"(?:∈|\\in(?![A-Za-z]))[\s$]*(?:\\left(?![A-Za-z])\s*)?(?=[\[\](])")
 _TEN = re.compile(r"(?<=[0-9])\s?([xX])\s?(?=10(?:\^|\*\*|[⁻⁺⁰¹²³⁴-⁹]))")
 _DOTS = re.compile(r"(?<=[0-9])(?:\.\.\.+|…|\\(?:dots|ldots|cdots)(?![A-Za-z]))")
 _COMMA = re.compile(r"(?<![0-9A-Za-z_.,])[0-9]+,[0-9]+(?![0-9,])")
@@ -201,7 +202,14 @@ def signed_tables(place: str, table: Mapping[str, Any], fault: _Fault) -> list[M
 
 
 def _refuse_doubtful_figures(text: str, *, measured: bool) -> None:
-    """Refuse a comma that is a decimal point or parts two values, and degrees that do not count from zero."""
+    """Refuse a comma that is a decimal point or parts two values, and degrees that do not count from zero.
+
+    So is a range ``x ∈ [1, 3]``, which is all values between the two; ``x ∈ {1, 3}`` is one or the other.
+    """
+    between = _IN_BRACKETS.search(text)
+    if between and (text[between.end()] == "]" or len(entries_of(text[between.end() :])) == 2):
+        told = "is this every value between the two, or one or the other of them?"
+        raise LanguageError(text, between.end() + 1, told, "write the values in braces, as in {1, 3}")
     found = _COMMA.search(text)
     if found and text.count("{", 0, found.start()) + text.count("(", 0, found.start()) == 0:
         whole, _, part = found.group().partition(",")
