@@ -43,7 +43,7 @@ def read_by_labels(y0: Any) -> Any:
     >>> read_by_labels(pandas.Series([1.0, 0.0]))
     array([1., 0.])
     """
-    if isinstance(y0, np.ma.MaskedArray) and np.ma.is_masked(y0):
+    if np.ma.is_masked(y0):
         raise ValueError(f"numbers of the start are masked ({y0}): give them all")
     if isinstance(y0, Mapping):
         return y0  # pyright: ignore[reportUnknownVariableType]
