@@ -26,7 +26,9 @@ _ABOVE = re.compile(
 """Dots that are set above a letter by hand."""
 _DOUBLED = re.compile(r"\{\s?\{([^{}]{0,400})\}\s?\}")
 _RAISED_D = re.compile(r"\{\s?((?:d|\\partial)\s?\^\s?[2-4])\s?\}(?=\s?\\?[A-Za-z])")
-_RAISED_T = re.compile(r"(?<=[d{])\s?\{\s?([A-Za-z]\s?\^\s?[2-4])\s?\}|(?<=\\partial)\s?\{\s?([A-Za-z]\s?\^\s?[2-4])\s?\}")
+_RAISED_T = re.compile(
+    r"(?<=[d{])\s?\{\s?([A-Za-z]\s?\^\s?[2-4])\s?\}|(?<=\\partial)\s?\{\s?([A-Za-z]\s?\^\s?[2-4])\s?\}"
+)
 """MathType's braces around each power."""
 _TYPST = re.compile(r"(?<![\w.\\])dot(?P<two>\.double)?\(\s?(?P<name>[^\W\d_]\w{0,15})\s?\)")
 _SMALL = dict(
@@ -101,7 +103,9 @@ def _without_primes_on_brackets(text: str) -> str:
     """Return a text with ``d/dt(…)`` for a bracket with a prime or a dot that holds a rate and is no argument."""
     for _ in range(4):
         places = [found for found in _ON_BRACKET.finditer(text)]
-        made = next((new for found in places if (new := _derived(text, found.start(), found.end())) != text), text)
+        made = next(
+            (new for found in places if (new := _derived(text, found.start(), found.end())) != text), text
+        )
         if made == text:
             break
         text = made

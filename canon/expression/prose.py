@@ -80,7 +80,9 @@ def _beginning(text: str, scope: Scope) -> int:
     if bullet and (behind := _heading_end(text, bullet.end(), scope)) > bullet.end():
         begin = behind
     for _ in range(3):
-        found = max(step(text, begin, scope) for step in (_heading_end, _upright_end, _lead_end, end_of_sentence))
+        found = max(
+            step(text, begin, scope) for step in (_heading_end, _upright_end, _lead_end, end_of_sentence)
+        )
         marks = _MARKS.match(text, found)
         found = marks.end() if marks and found > begin else found
         if found == begin or not text[found:].strip():

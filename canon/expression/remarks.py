@@ -35,14 +35,14 @@ _BEHIND = re.compile(
     rf"[(\[](?P<name>{_NUMBER}|[a-h]|{_ROMAN}|\*{{1,3}})[)\]]\}}?(?=\s*(?:\$\$?|\\\]|\\\))?[\s.,]*(?:$|\\\\))"
 )
 """The same behind an equation, at the end of a text or a row."""
-_WORDS = re.compile(r"(?<=[\w)\]}'′″])[ \t]{1,9}\(([A-Za-z][A-Za-z'’ -]{2,60})\)[\s.]{0,9}$")
+_WORDS = re.compile(r"(?<=[\w)\]}'′″$])[ \t]{1,9}\(([^\W\d_](?:[^\W\d_]|['’ -]){2,60})\)[\s.]{0,9}$")
 _UPRIGHT = re.compile(
     r"(?:\s|~|\\[,;:! ]|\\q{1,2}uad){0,9}\\(?:text|textrm|textit|mathrm)\s?"
-    r"\{\s{0,9}\(([A-Za-z][A-Za-z'’ -]{2,60})\)\s{0,9}\}([\s.$]{0,9}|\s*\\[\])]\s*)$"
+    r"\{\s{0,9}\(([^\W\d_](?:[^\W\d_]|['’ -]){2,60})\)\s{0,9}\}([\s.$]{0,9}|\s*\\[\])]\s*)$"
 )
 _BEHIND_ROW = re.compile(
     r"(?:~|\\[,;: ]|\\q{1,2}uad){0,9}\\(?:text|textrm|textit|mathrm)\s?"
-    r"\{\s{0,9}\(([A-Za-z][A-Za-z'’ -]{2,60})\)\s{0,9}\}(?=[\s.,]{0,9}\\\\)"
+    r"\{\s{0,9}\(([^\W\d_](?:[^\W\d_]|['’ -]){2,60})\)\s{0,9}\}(?=[\s.,]{0,9}\\\\)"
 )
 """The same behind a row that is not the last."""
 _UNIT = re.compile(r"(?<=[\w)\]}'′″])[ \t]{1,9}\[([^\[\]]{1,40})\][\s.]{0,9}$")

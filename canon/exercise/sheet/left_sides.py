@@ -193,7 +193,11 @@ def _by_name(place: str, number: int, name: str, keys: Mapping[str, Any], scope:
     _, rates = _COMPONENTS[place]
     letters = _by_letter(place, number, name, keys.get("q", []))
     also = [(s, 0) for s in letters if s in scope.other_names or not scope.declares(s)]
-    if place == "p_dot" and ("p" in scope.other_names or not scope.declares("p")) and len(_listed(keys.get("p"))) == 1:
+    if (
+        place == "p_dot"
+        and ("p" in scope.other_names or not scope.declares("p"))
+        and len(_listed(keys.get("p"))) == 1
+    ):
         also.append(("p", 1))  # the only momentum
     return Quantity(f"{name}{chr(39) * rates}", ((name, rates), (f"{name}{'_dot' * rates}", 0), *also))
 

@@ -394,7 +394,11 @@ class _Plain:
     def is_constant(self, place: str, side: Side) -> bool:
         """Tell whether a side only says that the others are constant."""
         of_motion = place == "I" or place.startswith("conserved")
-        return of_motion and not self.scope.declares("const") and field_texts.says_constant(side.text, self.scope)
+        return (
+            of_motion
+            and not self.scope.declares("const")
+            and field_texts.says_constant(side.text, self.scope)
+        )
 
     def bracket(self, place: str, pair: Any) -> Any:
         """Return a bracket whose value is in plain form."""

@@ -190,7 +190,11 @@ def _of_angle(value: Value, asked: str) -> Value:
 def signed_tables(place: str, table: Mapping[str, Any], fault: _Fault) -> list[Mapping[str, Any]]:
     """Return the one or two tables that values with ``±`` stand for."""
     try:
-        signed = {name: both_signs(without_label_of_table(name, text)) for name, text in table.items() if isinstance(text, str)}
+        signed = {
+            name: both_signs(without_label_of_table(name, text))
+            for name, text in table.items()
+            if isinstance(text, str)
+        }
     except LanguageError as error:
         raise fault(place, error) from None
     two = [name for name, texts in signed.items() if len(texts) == 2]

@@ -25,7 +25,14 @@ _NUMBERS: Mapping[str, str] = {
         "zero one two three four five six seven eight nine ten eleven twelve".split()
     )
 }
-_PARTS: Mapping[str, str] = {"half": "2", "halves": "2", "third": "3", "thirds": "3", "quarter": "4", "quarters": "4"}
+_PARTS: Mapping[str, str] = {
+    "half": "2",
+    "halves": "2",
+    "third": "3",
+    "thirds": "3",
+    "quarter": "4",
+    "quarters": "4",
+}
 _FUNCTIONS: Mapping[str, str] = {
     "sine": "sin", "cosine": "cos", "tangent": "tan", "cotangent": "cot", "exponential": "exp", "sin": "sin", "cos": "cos",
     "tan": "tan",
@@ -63,7 +70,10 @@ def written_from_dictation(text: str, scope: Scope) -> str:
         return text
     words = Words(text, scope)
     text = _with_rates(text, words) if "dot" in text else text
-    heard = [word.lower() if word.lower() in _SPOKEN else word for word in _WORD.findall(_HYPHEN.sub(" ", text.rstrip(" .")))]
+    heard = [
+        word.lower() if word.lower() in _SPOKEN else word
+        for word in _WORD.findall(_HYPHEN.sub(" ", text.rstrip(" .")))
+    ]
     spoken = {word for word in heard if word in _SPOKEN}
     if not spoken & _STRONG or len(spoken) < 2 or any(words.declared(word) for word in spoken):
         return text

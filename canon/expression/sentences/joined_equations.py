@@ -29,7 +29,9 @@ _EQUALS = re.compile(r"(?<![<>!])=|≡")
 _ALSO = "|".join(sorted(map(re.escape, ALSO - {"&", "|"}), key=len, reverse=True))
 _SO = "|".join(sorted(SO, key=len, reverse=True))
 _WHERE = "|".join(sorted(WHERE, key=len, reverse=True))
-_JOINT = re.compile(rf"(?<=\s)(?:{_ALSO}|&|(?<=\s\s)\|(?=\s\s))(?=\s)|(?<=\s)(?:{_WHERE})(?=[\s,:$])|(?<=[,;.]\s)(?:{_SO})(?=[\s,:$])")
+_JOINT = re.compile(
+    rf"(?<=\s)(?:{_ALSO}|&|(?<=\s\s)\|(?=\s\s))(?=\s)|(?<=\s)(?:{_WHERE})(?=[\s,:$])|(?<=[,;.]\s)(?:{_SO})(?=[\s,:$])"
+)
 _UPRIGHT = re.compile(
     rf"\\(?:text|textrm|mbox|mathrm)\s?\{{[\s~]*(?:{_ALSO}|{_WHERE})[\s~]*\}}", re.IGNORECASE
 )
@@ -92,7 +94,11 @@ def _start_of_definition(text: str, at: int, scope: Scope) -> int:
     if found is None:
         return 0
     words = found["words"].split()
-    return found.end("words") if all(word.lower() in HARMLESS and not _is_name(word, scope) for word in words) else 0
+    return (
+        found.end("words")
+        if all(word.lower() in HARMLESS and not _is_name(word, scope) for word in words)
+        else 0
+    )
 
 
 def _upright(found: re.Match[str], scope: Scope) -> str:
@@ -108,4 +114,9 @@ def _is_name(word: str, scope: Scope) -> bool:
     if word in ("&", "|"):
         return False
     known = {key_of(name) for name in scope.spelled}
-    return word in scope.functions or scope.declares(word) or (key_of(word) and key_of(word) in known) or split(word, scope) != ""
+    return (
+        word in scope.functions
+        or scope.declares(word)
+        or (key_of(word) and key_of(word) in known)
+        or split(word, scope) != ""
+    )

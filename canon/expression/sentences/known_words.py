@@ -25,24 +25,24 @@ HARMLESS = frozenset(
     dies dieses folgt ergibt erhält erhalten man wir sich bewegungsgleichung bewegungsgleichungen gleichung
     gleichungen lösung antwort ergebnis energie hamiltonfunktion lagrangefunktion impuls federkonstante masse
     länge wobei dann nach la le les un une du de est sont donc ainsi alors nous obtient trouve avons équation
-    équations mouvement réponse résultat énergie hamiltonien lagrangien el los las una es son por lo tanto
-    entonces luego así obtenemos resulta queda ecuación ecuaciones movimiento respuesta solución resultado energía
+    équations mouvement réponse résultat énergie hamiltonien lagrangien el los las es son por lo tanto entonces
+    luego así obtenemos resulta queda ecuación ecuaciones movimiento respuesta solución resultado energía
     hamiltoniano lagrangiano del que se cyclotron frictional force forces tension following let us thereby
     lagrangians hamiltonians chain sum deduce deduces deduced derive derived write writes written read holds
     governing gilt gelten nun zwangskraft zwangskräfte reibungskraft fadenkraft normalkraft beschleunigung
     geschwindigkeit winkelgeschwindigkeit richtung radialer radiale tangentialer kreisfrequenz eigenfrequenz kraft
     kräfte mit für im folglich gesucht gesuchte hamiltonschen lagrangeschen gleichungssystem gesamtenergie en
-    déduit déduire obtenons trouvons écrit écrire peut avec pour fil pulsation système totale cinétique
-    potentielle finalement s'écrit s'écrivent vaut valent vérifie où d'où il vient au aux ecuacion función
-    generatriz vale valen tensión fuerza deducimos sistema obtiene siguiente finalmente tiene tenemos con para
-    quindi dunque perciò pertanto equazione equazioni della delle dei di moto gli uno tensione forza forze
-    risposta risultato soluzione otteniamo ottiene abbiamo trova troviamo segue seguente energia è sono per cui
-    hamiltoniana lagrangiana vincolare filo valgono equação equações movimento portanto logo então resposta
-    solução obtemos obtém força função são é temos da do dos dus bewegingsvergelijking bewegingsvergelijkingen
-    vergelijking vergelijkingen antwoord volgt krijgen oplossing het een zijn geldt wordt luidt kracht równanie
-    równania ruchu odpowiedź zatem więc stąd otrzymujemy mamy jest są rozwiązanie wynik siła układ mają postać
-    układu pohybová pohybové rovnice odpověď řešení výsledek tedy proto dostaneme dostáváme platí je jsou síla
-    tvar rörelseekvationen rörelseekvationer rörelseekvation svar alltså ekvation ekvationen blir är lösning får
+    déduit déduire obtenons trouvons écrit écrire avec pour fil pulsation système totale cinétique potentielle
+    finalement s'écrit s'écrivent vaut valent vérifie où d'où il vient au aux ecuacion función generatriz vale
+    valen tensión fuerza deducimos sistema obtiene siguiente finalmente tiene tenemos con para quindi dunque
+    perciò pertanto equazione equazioni della delle dei di moto gli tensione forza forze risposta risultato
+    soluzione otteniamo ottiene abbiamo trova troviamo segue seguente energia è sono per cui hamiltoniana
+    lagrangiana vincolare filo valgono equação equações movimento portanto logo então resposta solução obtemos
+    obtém força função são é temos da do dos dus bewegingsvergelijking bewegingsvergelijkingen vergelijking
+    vergelijkingen antwoord volgt krijgen oplossing het een zijn geldt wordt luidt kracht równanie równania ruchu
+    odpowiedź zatem więc stąd otrzymujemy mamy jest są rozwiązanie wynik siła układ mają postać układu pohybová
+    pohybové rovnice odpověď řešení výsledek tedy proto dostaneme dostáváme platí je jsou síla tvar
+    rörelseekvationen rörelseekvationer rörelseekvation svar alltså ekvation ekvationen blir är lösning får
     bevægelsesligningen bevægelsesligning bevegelsesligningen bevegelsesligning svaret ligning ligningen derfor
     altså mozgásegyenlet megoldás válasz tehát így eredmény hareket denklemi denklemleri denklem cevap yanıt sonuç
     böylece çözüm ecuația ecuațiile mișcare mișcării răspuns răspunsul deci rezultă obținem soluție rezultat
@@ -52,7 +52,15 @@ HARMLESS = frozenset(
     из этого следует что находим имеем есть для маятника уравнений циклическая частота реакция связи ускорение
     скорость импульс запишем окончательно відповідь рівняння руху отже маємо отримуємо розв'язок звідси отговор
     уравнението движението следователно получаваме решението άρα επομένως συνεπώς εξίσωση εξισώσεις κίνησης
-    απάντηση λύση είναι προκύπτει έχουμε τελικά οι της
+    απάντηση λύση είναι προκύπτει έχουμε τελικά οι της una uno kurz brief bref insgesamt schließlich short period
+    reaction accelerations rates constraint normal spannung zugkraft seilkraft periode schwingungsdauer drehimpuls
+    differentialgleichung endergebnis lagrangegleichung lagrangegleichungen lagrange-funktion hamilton-funktion
+    kinetische gesamte pendel pendels feder accélération accélérations vitesse impulsion période fonction
+    hamiltonienne lagrangienne réaction normale lien aceleración aceleraciones velocidad momento frecuencia
+    periodo fuerzas ligadura movimientos péndulo accelerazione accelerazioni velocità frequenza reazione vincolo
+    impulso funzione pendolo aceleração velocidade tensão frequência versnelling spankracht snelheid
+    przyspieszenie napięcie naciąg prędkość zrychlení napětí период ускорения натяжения реакции связь маятник
+    accelerationen
     """.split()
 )
 """Words that name a formula or lead to it and never change what it says; any other word is read as a part of it."""
@@ -61,7 +69,7 @@ LEADING = frozenset(
     also are becomes equals find follows get gets gives have hence is obtain obtains reads so that then therefore
     thus yields lautet lauten ist folgt ergibt somit daher dann donc ainsi alors est trouve obtient tanto entonces
     luego es resulta obtenemos write writes gilt folglich obtenons trouvons déduit vaut valent vient vale valen
-    queda son tiene tenemos sono quindi dunque perciò pertanto otteniamo ottiene abbiamo segue portanto logo então
+    queda son tiene tenemos sono è quindi dunque perciò pertanto otteniamo ottiene abbiamo segue portanto logo então
     obtemos obtém são é temos dus krijgen volgt luidt geldt zatem więc stąd otrzymujemy mamy jest są tedy proto
     dostaneme dostáváme platí je jsou alltså blir är får altså derfor tehát így böylece deci rezultă obținem siis
     вид получаем получим следовательно отсюда тогда образом итак значит равна равно равен равны находим имеем есть
@@ -69,7 +77,9 @@ LEADING = frozenset(
     """.split()
 )
 """Those of them that a formula may follow."""
-ALSO = frozenset("and und et y e и та και oraz og och en ve és și şi sowie 和 及 与 與 以及 と 및 & |".split())
+ALSO = frozenset(
+    "and und et y e и та και oraz og och en ve és și şi sowie 和 及 与 與 以及 と 및 & |".split()
+)
 """Words between two equations both of which are said."""
 SO = frozenset(
     """
@@ -102,7 +112,7 @@ _DENIED = re.compile(
     |hardly|barely|kaum|rarely|selten|hypoth.*|example|beispiel.*|exemple|ejemplo|esempio|przykład.*|пример.*
     |question|frage|pregunta|domanda|вопрос.*|pytanie|given|gegeben.*|donné.*|dado.*|dato|dati|дано|dane
     |or|oder|ou|o|u|ó|où\?|eller|lub|albo|bądź|nebo|anebo|ili|или|либо|або|чи|vai|või|tai|vagy|sau|ori|veya|yahut
-    |atau|either|entweder|ή|είτε|soit|sea|maybe|perhaps|peut-être|vielleicht|eventuell.*|evtl|forse|quiz.s|tal|talvez
+    |atau|either|entweder|ή|είτε|soit|sea|maybe|perhaps|peut|être|doubt.*|zweif.*|bezweif.*|doute.*|dud[ao].*|dubbi.*|сомн.*|fake.*|geraten|vielleicht|eventuell.*|evtl|forse|quiz.s|tal|talvez
     |może|możliwe|возможно|может|možná|misschien|wellicht|kanske|kanskje|måske|ehkä|talán|belki|poate|ίσως|proba.*
     |wahrsch.*|vermut.*|вероятно|наверное|видимо|pravděpod.*|prawdopod.*|proba.*|guess.*|think.*|believ.*|suppos.*
     |assum.*|annahme.*|angenomm.*|glaube.*|denke.*|crois|pense|creo|credo|penso|думаю|кажется|alternat.*|another
@@ -122,9 +132,13 @@ _DENIED = re.compile(
 Words that begin as negations do are among them, though many say something else: an answer that is not read can be
 written again.
 """
+EASTERN = re.compile(
+    "方程|運動|运动|答|解|結果|结果|張力|拉力|力|速度|エネルギー|ハミルトニアン|ラグランジアン|運動量|动量|能量|式|답|해|운동|방정식|장력|가속도|에너지"
+)
+"""Words of Chinese, Japanese and Korean that name a formula, at least one of which stands before it."""
 _SIGNS_OF_DENIAL = re.compile(
     "[不没沒非无無未否错錯誤误假或若如果但勿莫反非異异别別除嘘違禁絶才只仅僅約约近疑問问旧例]|ない|ぬ|ません|なし|なく|なかっ|ず|まい|では|じゃ"
-    "|また|もし|あるい|かも|だろう|でしょ|と思|うそ|ウソ|ダメ|だめ|たら|れば|なら|か[、。?？]|か$"
+    "|また|もし|あるい|かも|だろう|でしょ|おそらく|たぶん|多分|恐らく|きっと|はず|らし|そう|と思|うそ|ウソ|ダメ|だめ|たら|れば|なら|か[、。?？]|か$"
     "|아니|아닌|않|못|없|또는|혹은|이나|거나|거짓|틀|오류|아마|만약|만일|면|반대|까"
 )
 """The same in Chinese, Japanese and Korean, where words are not set apart."""

@@ -1,8 +1,8 @@
 """Leading sentences: what stands before an equation in any language, up to a colon or to letters of another script.
 
 ``Beschleunigung: x'' = g``, ``Натяжение нити: λ = m g``, ``よって運動方程式は m x'' = -k x となる。`` Only words are passed
-over, none of them declared or made of declared names, and none that denies the equation, leaves it open or restricts
-it; what is behind them holds an equality sign, so that it says by itself what it is about.
+over, none of them declared or made of declared names, one of them known to name a formula, and none that denies it,
+leaves it open or restricts it; what is behind them holds an equality sign, so that it says by itself what it is about.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from canon.expression.sentences.known_words import HARMLESS, is_denial
+from canon.expression.sentences.known_words import EASTERN, HARMLESS, is_denial
 from canon.expression.text.declared_names import function_name
 from canon.expression.text.scope import split
 from canon.expression.text.tokens import GREEK
@@ -36,7 +36,9 @@ _CONCLUDED = re.compile(
     r"|이다|입니다|가 된다|이 된다|成立|即为所求)[\s.。]*(?=\$?\s*$)"
 )
 """What Japanese, Korean and Chinese say behind an equation, where nothing in it denies it."""
-_ELIDED = re.compile(r"(?<![^\W\d_])(?:[cdjlmst]|qu|all|dall|dell|nell|sull)['’](?=[^\W\d_]{2})", re.IGNORECASE)
+_ELIDED = re.compile(
+    r"(?<![^\W\d_])(?:[cdjlmst]|qu|all|dall|dell|nell|sull)['’](?=[^\W\d_]{2})", re.IGNORECASE
+)
 """French and Italian words before a vowel."""
 _SHORTEST = 3
 """Letters of a word that is not of the list; shorter ones may be quantities."""
@@ -79,7 +81,12 @@ def _says_nothing(said: str, scope: Scope) -> bool:
     words = [word for word in _WORD.findall(_ELIDED.sub("", said)) if word]
     if not 0 < len(words) <= _MOST_WORDS or re.search(r"['’]", _ELIDED.sub("", said)):
         return False
-    return max(map(_length, words)) >= _SHORTEST and all(_is_word(word, scope) for word in words)
+    return any(map(_names_a_formula, words)) and all(_is_word(word, scope) for word in words)
+
+
+def _names_a_formula(word: str) -> bool:
+    """Tell whether a word is one of those that name a formula or lead to it: others alone may mock it."""
+    return (len(word) > _SHORTEST and word.lower() in HARMLESS) or EASTERN.search(word) is not None
 
 
 def _length(word: str) -> int:
@@ -93,9 +100,16 @@ def _is_word(word: str, scope: Scope) -> bool:
         return False
     if word.lower() in HARMLESS:
         return True
-    return _length(word) >= _SHORTEST and _is_known_script(word) and word not in _GREEK and not is_denial(word)
+    return (
+        _length(word) >= _SHORTEST and _is_known_script(word) and word not in _GREEK and not is_denial(word)
+    )
 
 
 def _is_known_script(word: str) -> bool:
     """Tell whether a word is in a script whose words of denial are listed."""
-    return re.fullmatch(rf"[A-Za-z\u00c0-\u024f\u1e00-\u1eff\u0370-\u03ff\u1f00-\u1fff{_CYRILLIC}{_EAST}]+", word) is not None
+    return (
+        re.fullmatch(
+            rf"[A-Za-z\u00c0-\u024f\u1e00-\u1eff\u0370-\u03ff\u1f00-\u1fff{_CYRILLIC}{_EAST}]+", word
+        )
+        is not None
+    )

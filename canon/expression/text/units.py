@@ -44,7 +44,7 @@ _ACCELERATION = re.compile(
     r"m(?:\s?/\s?s\s?(?:²|\^\{?2\}?|\*\*2)|(?:\s|[*·⋅]|\\,|\\cdot){1,3}s\s?(?:⁻²|\^(?:[-−]2|\{[-−]2\}|\([-−]2\))|\*\*\(?-2\)?))"
 )
 _SAID_OF_ACCELERATION = re.compile(
-    r"(?:[A-Za-z](?:_\w{1,9})?(?:''|″|′′|\u0308)|[ẍẅÿ]|\\ddot\s?\{?\s?\\?[A-Za-z]{1,9}\s?\}?(?:_\{?\w{1,9}\}?)?|\w_ddot)\s*&?=\s*[-−+]?\s*$"
+    r"(?:^|[;,\n$&])\s*(?:[A-Za-z](?:_\w{1,9})?(?:''|″|′′|\u0308)|[ẍẅÿ]|\\ddot\s?\{?\s?\\?[A-Za-z]{1,9}\s?\}?(?:_\{?\w{1,9}\}?)?|\w_ddot)\s*&?=\s*[-−+]?\s*$"
 )
 """An acceleration by itself before its value."""
 _FACTOR = re.compile(r"\s{0,9}[^\W_]|\s{0,9}[(\[√∛∜]")
@@ -84,7 +84,9 @@ def _units(text: str, scope: Scope) -> Iterator[Unit]:
         at = number.end()
         if latex:
             found = _UPRIGHT.match(text, at)
-            free = found and (not _declares(found.group(1), scope) or _is_acceleration(found.group(1), text, number, scope))
+            free = found and (
+                not _declares(found.group(1), scope) or _is_acceleration(found.group(1), text, number, scope)
+            )
             if found and free and _INSIDE.fullmatch(found.group(1)):
                 yield Unit(found.group(1).strip(), at, found.end())
         elif found := _BRACKET.match(text, at):

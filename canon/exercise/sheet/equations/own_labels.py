@@ -21,7 +21,13 @@ if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
     from canon.expression.text.statement import Side
 
-__all__ = ["counted_in_words", "is_rest", "without_differential", "without_label_of_table", "without_own_label"]
+__all__ = [
+    "counted_in_words",
+    "is_rest",
+    "without_differential",
+    "without_label_of_table",
+    "without_own_label",
+]
 
 _NUMBERS: Mapping[str, str] = {
     word: str(number)
@@ -34,7 +40,9 @@ _NUMBERS: Mapping[str, str] = {
     )
     for word in words.split()
 }  # fmt: skip
-_DIFFERENTIAL = re.compile(r"\s*\$?\s*(?:\\(?:mathrm|text|operatorname)\s?\{\s?d\s?\}|\\mathrm\s?d|d)\s*f\s*=(?!=)")
+_DIFFERENTIAL = re.compile(
+    r"\s*\$?\s*(?:\\(?:mathrm|text|operatorname)\s?\{\s?d\s?\}|\\mathrm\s?d|d)\s*f\s*=(?!=)"
+)
 _ONE_NAME = re.compile(r"[\s$]*\\?[^\W\d_]+(?:_\{?\w{1,4}\}?)?(?:\s?\([^()=]{1,40}\))?\s*")
 _OF_TABLE = re.compile(r"(?P<name>[\s$]*\\?[^\W\d]\w{0,15}(?:_\{\w{1,5}\})?)\s*=(?=[^=]*$)")
 
