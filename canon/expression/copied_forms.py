@@ -102,7 +102,7 @@ def _exponent(found: re.Match[str]) -> str:
 def _without_primes_on_brackets(text: str) -> str:
     """Return a text with ``d/dt(…)`` for a bracket with a prime or a dot that holds a rate and is no argument."""
     for _ in range(4):
-        places = [found for found in _ON_BRACKET.finditer(text)]
+        places = [*_ON_BRACKET.finditer(text)]
         made = next(
             (new for found in places if (new := _derived(text, found.start(), found.end())) != text), text
         )

@@ -275,7 +275,8 @@ def with_equality_signs(text: str) -> str:
 
 
 _AT_REST = re.compile(
-    r"\+\s*(?:\\(?:text|mathrm)\s?\{\s*)?[(\[]?(?:(?:other |some )?terms (?:without|independent of|free of)(?: the)? accelerations?"
+    r"\+\s*(?:\\(?:text|mathrm)\s?\{\s*)?[(\[]?(?:"
+    r"(?:other |some )?terms (?:without|independent of|free of)(?: the)? accelerations?"
     r"|Terme ohne Beschleunigung(?:en)?|termes sans accélérations?)[)\]]?\s*\}?(?=[\s.$]*$)"
 )
 

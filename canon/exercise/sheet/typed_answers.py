@@ -52,7 +52,7 @@ if TYPE_CHECKING:
 
     from canon.exercise.sheet.sheet import Claim
     from canon.expression.text.scope import Scope
-    from canon.expression.text.statement import Side
+    from canon.expression.text.statement import Side, Statement
 
     _Fault = Callable[[str, LanguageError], Exception]
 
@@ -212,16 +212,7 @@ class _Plain:
         if len(statements) > 1:
             statements = [s for s in statements if not given.says_a_momentum(s)] or statements
         if len(statements) > 1:
-            named = [s for s in statements if self.is_asked(s.sides[0], asked) and s.sides[1:]]
-            other = next((s for s in statements if s not in named), statements[-1]).sides[0]
-            if len(named) == 1:
-                reason, remedy = (
-                    f"this is another statement beside {asked.shown}",
-                    "put it in, or leave it out",
-                )
-            else:
-                reason, remedy = f"one expression is asked for: {asked.shown}", "leave the others out"
-            raise self.sides.told(place, text, other, reason, remedy)
+            raise self.several_said(place, text, statements, asked)
         named = self.without_name_of_bracket(place, next(iter(statements)).sides, asked)
         if is_rest(place, named, asked, self.scope):
             return "0"
@@ -252,6 +243,17 @@ class _Plain:
             return sides
         self.found.passed.append(f"{label.name} in {place} is taken for {asked.shown}, which is asked for")
         return sides[1:]
+
+    def several_said(
+        self, place: str, text: str, statements: Sequence[Statement], asked: Quantity
+    ) -> Exception:
+        """Return the error of several statements where one expression is asked for."""
+        named = [s for s in statements if self.is_asked(s.sides[0], asked) and s.sides[1:]]
+        other = next((s for s in statements if s not in named), statements[-1]).sides[0]
+        reason, remedy = f"one expression is asked for: {asked.shown}", "leave the others out"
+        if len(named) == 1:
+            reason, remedy = f"this is another statement beside {asked.shown}", "put it in, or leave it out"
+        return self.sides.told(place, text, other, reason, remedy)
 
     def without_own_label(self, place: str, sides: Sequence[Side]) -> Sequence[Side]:
         """Return sides without a free name before what the question has no name for, which is told."""

@@ -22,7 +22,21 @@ __all__ = ["written_from_dictation"]
 _NUMBERS: Mapping[str, str] = {
     word: str(number)
     for number, word in enumerate(
-        "zero one two three four five six seven eight nine ten eleven twelve".split()
+        (
+            "zero",
+            "one",
+            "two",
+            "three",
+            "four",
+            "five",
+            "six",
+            "seven",
+            "eight",
+            "nine",
+            "ten",
+            "eleven",
+            "twelve",
+        )
     )
 }
 _PARTS: Mapping[str, str] = {
@@ -34,8 +48,8 @@ _PARTS: Mapping[str, str] = {
     "quarters": "4",
 }
 _FUNCTIONS: Mapping[str, str] = {
-    "sine": "sin", "cosine": "cos", "tangent": "tan", "cotangent": "cot", "exponential": "exp", "sin": "sin", "cos": "cos",
-    "tan": "tan",
+    "sine": "sin", "cosine": "cos", "tangent": "tan", "cotangent": "cot", "exponential": "exp", "sin": "sin",
+    "cos": "cos", "tan": "tan",
 }  # fmt: skip
 _POWERS: Mapping[str, str] = {"squared": "2", "cubed": "3"}
 _SIGNS: Mapping[str, str] = {"plus": "+", "minus": "-", "negative": "-"}

@@ -1,7 +1,7 @@
 """Joined equations: words, signs and punctuation of other languages between them, made what this language has.
 
-``r'' = a oraz φ'' = b``, ``x'' = 0 & y'' = -g``, ``ｍｘ'' ＝ －ｋｘ、y'' = 0。`` A word is taken for one that joins only
-where it is no name of the question and an equality sign stands on either side of it.
+``r'' = a oraz φ'' = b``, ``x'' = 0 & y'' = -g``, ``ｍｘ'' ＝ －ｋｘ、y'' = 0。`` A word is taken for one that joins
+only where it is no name of the question and an equality sign stands on either side of it.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ def _with_semicolons(text: str, scope: Scope) -> str:
             continue
         if found.group().lower() in WHERE:
             end = _start_of_definition(text, end, scope)
-        elif found.group() == "|" and text.count("|") > 1 or (found.group() == "&" and is_latex(text)):
+        elif (found.group() == "|" and text.count("|") > 1) or (found.group() == "&" and is_latex(text)):
             continue
         if end > begin:
             signs[begin:end] = ";".ljust(end - begin)

@@ -1,8 +1,9 @@
 """Leading sentences: what stands before an equation in any language, up to a colon or to letters of another script.
 
-``Beschleunigung: x'' = g``, ``Натяжение нити: λ = m g``, ``よって運動方程式は m x'' = -k x となる。`` Only words are passed
-over, none of them declared or made of declared names, one of them known to name a formula, and none that denies it,
-leaves it open or restricts it; what is behind them holds an equality sign, so that it says by itself what it is about.
+``Beschleunigung: x'' = g``, ``Натяжение нити: λ = m g``, ``よって運動方程式は m x'' = -k x となる。`` Only words are
+passed over, none of them declared or made of declared names, one of them known to name a formula, and none that denies
+it, leaves it open or restricts it; what is behind them holds an equality sign, so that it says by itself what it is
+about.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Labels of a writer's own before an answer that has no name in the question, and answers that are said by a word.
+"""Labels of a writer's own before an answer that has no name in the question, and answers in words.
 
-``c = 1/2`` where a factor is asked, ``C = a² + b²`` of a Casimir function, ``df = …`` of a differential, ``α = 2`` in the
-table of α, ``p_φ = const`` for its rate, ``two`` degrees of freedom.
+``c = 1/2`` where a factor is asked, ``C = a² + b²`` of a Casimir function, ``df = …`` of a differential, ``α = 2`` in
+the table of α, ``p_φ = const`` for its rate, ``two`` degrees of freedom.
 """
 
 from __future__ import annotations

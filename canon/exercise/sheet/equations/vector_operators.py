@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from sympy import Dummy, S, Symbol
 
@@ -84,7 +84,7 @@ def _of_side(side: Side, variables: Sequence[Symbol], scope: Scope) -> list[Expr
         return []
     names = {**scope.names, **{f"Basis_{i}": e for i, e in enumerate(basis)}}
     said = parse_expression(plain, replace(scope, names=names))
-    found = [said.diff(e) for e in basis]
+    found = [cast("Expr", said.diff(e)) for e in basis]
     linear = (
         not any(factor.has(*basis) for factor in found) and said.xreplace(dict.fromkeys(basis, S.Zero)) == 0
     )

@@ -1,4 +1,4 @@
-"""Rounded values behind exact ones, ``θ = arccos(2/3) ≈ 48.2°``: passed over where they are those, to their last figure."""
+"""Rounded values behind exact ones, ``θ = arccos(2/3) ≈ 48.2°``: passed over where their figures are right."""
 
 from __future__ import annotations
 
@@ -50,7 +50,10 @@ def without_rounded(text: str, scope: Scope) -> tuple[str, str]:
 def _is_small(exact: sp.Expr) -> bool:
     """Tell whether a number can be worked out at once: no power in it is a tower."""
     exponents = [power.exp for power in exact.atoms(sp.Pow)] + [power.exp for power in exact.atoms(sp.exp)]
-    return all(exponent.is_Rational and abs(exponent) <= _GREATEST_EXPONENT for exponent in exponents)
+    return all(
+        isinstance(exponent, sp.Rational) and abs(exponent.p) <= _GREATEST_EXPONENT * exponent.q
+        for exponent in exponents
+    )
 
 
 def _rounds(exact: sp.Expr, found: re.Match[str]) -> bool:
