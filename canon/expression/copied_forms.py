@@ -7,10 +7,13 @@ letters, ``(m r² φ')' = 0`` with a prime on a bracket, ``D(D(x)) ~ -x`` of Mod
 from __future__ import annotations
 
 import re
+import unicodedata
 from typing import TYPE_CHECKING
 
+from canon.expression.text.declared_names import Words
 from canon.expression.text.notation import is_latex
 from canon.expression.text.tokens import MAX_CHARACTERS
+from canon.expression.written_rates import has_rate
 
 if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
@@ -44,7 +47,8 @@ _FIGURES = re.compile(r"[⁺⁻]?[⁰¹²³⁴-⁹]+|⁻?ⁿ")
 """What the language has by itself."""
 _ON_BRACKET = re.compile(r"\)(?:'|′|˙|\u0307)(?!['′˙\u0307\w(^*²³])")
 _BEFORE_BRACKET = re.compile(r"(?:^|[=+\-−;,(|\n])\s*$")
-_MOVES = re.compile(r"['′˙¨\u0307\u0308]|\\d?dot(?![A-Za-z])|[ẋẏżṙẍ]|_d?dot(?!\w)|d\w{1,9}\s?/\s?dt")
+_DOTTED = re.compile(r"[˙¨\u0307\u0308ẋẏżṙẍ]|_d?dot(?!\w)|d\w{1,9}\s?/\s?dt")
+_PRIMED = re.compile(r"(?P<run>[^\W\d_]{1,12}(?:_\w{1,6})?)['′]")
 _TILDE = re.compile(r"(?<=\s)~(?=\s)")
 _JULIA = re.compile(r"(?<!\w)D\(\s?(?P<two>D\(\s?)?(?P<name>[^\W\d_]\w{0,15})\s?\)(?(two)\s?\))")
 
@@ -55,20 +59,20 @@ def plainly_formed(text: str, scope: Scope) -> str:
     Examples
     --------
     >>> from canon.expression.text.scope import Scope
-    >>> plainly_formed(r"m\overset{..}{x}", Scope()), plainly_formed("n·qⁿ⁻¹", Scope()), plainly_formed("x²", Scope())
-    ('m\\ddot{x}', 'n·q^(n-1)', 'x²')
-    >>> plainly_formed("(r² φ')' = 0", Scope()), plainly_formed("V(φ')' = 0", Scope())
-    ("d/dt(r² φ') = 0", "V(φ')' = 0")
+    >>> plainly_formed(r"m\overset{..}{x}", Scope()), plainly_formed("eᵗ⁺¹", Scope()), plainly_formed("xᵃ", Scope())
+    ('m\\ddot{x}', 'e^(t+1)', 'xᵃ')
+    >>> plainly_formed("(r² φ̇)˙ = 0", Scope()), plainly_formed("V(φ̇)˙ = 0", Scope())
+    ('d/dt(r² φ̇) = 0', 'V(φ̇)˙ = 0')
     """
     if len(text) > MAX_CHARACTERS:
         return text
     if is_latex(text):
         return _of_mathtype(text) if "\\" in text else text
-    text = _RAISED.sub(_exponent, text)
+    text = _RAISED.sub(lambda found: _exponent(found.group(), scope), text)
     if "dot." in text and not scope.declares("dot"):
         text = _TYPST.sub(lambda found: found["name"] + "'" * (2 if found["two"] else 1), text)
     if not (scope.declares("d") or "d" in scope.functions):
-        text = _without_primes_on_brackets(text)
+        text = _without_primes_on_brackets(text, Words(text, scope))
     equal = "=" not in text and len(_TILDE.findall(text)) == 1
     if not equal or not _JULIA.search(text) or scope.declares("D") or "D" in scope.functions:
         return text
@@ -91,20 +95,20 @@ def _accented(found: re.Match[str]) -> str:
     return rf"\{'d' * two}dot{{{found['a'] or found['b']}}}"
 
 
-def _exponent(found: re.Match[str]) -> str:
-    """Return an exponent in small letters in brackets; figures alone stay as they are."""
-    small = found.group()
-    if _FIGURES.fullmatch(small) or not any(_SMALL[each][0].isalpha() for each in small):
+def _exponent(small: str, scope: Scope) -> str:
+    """Return an exponent in small letters in brackets; figures alone, and indices that are not declared, stay."""
+    letters = [_SMALL[each] for each in small if _SMALL[each][0].isalpha()]
+    if _FIGURES.fullmatch(small) or not letters or not all(map(scope.declares, letters)):
         return small
     return f"^({''.join(_SMALL[each] for each in small)})"
 
 
-def _without_primes_on_brackets(text: str) -> str:
+def _without_primes_on_brackets(text: str, words: Words) -> str:
     """Return a text with ``d/dt(…)`` for a bracket with a prime or a dot that holds a rate and is no argument."""
     for _ in range(4):
         places = [*_ON_BRACKET.finditer(text)]
         made = next(
-            (new for found in places if (new := _derived(text, found.start(), found.end())) != text), text
+            (new for found in places if (new := _derived(text, found.start(), found.end(), words)) != text), text
         )
         if made == text:
             break
@@ -112,12 +116,19 @@ def _without_primes_on_brackets(text: str) -> str:
     return text
 
 
-def _derived(text: str, close: int, end: int) -> str:
+def _moves(inside: str, words: Words) -> bool:
+    """Tell whether the rate of a coordinate stands in a bracket; V' of a function is none."""
+    runs = [found["run"] for found in _PRIMED.finditer(inside)]
+    primed = any(has_rate(run, words) or has_rate(run[-1], words) for run in runs)
+    return primed or _DOTTED.search(unicodedata.normalize("NFD", inside)) is not None
+
+
+def _derived(text: str, close: int, end: int, words: Words) -> str:
     depth = 0
     for at in range(close, -1, -1):
         depth += (text[at] == ")") - (text[at] == "(")
         if depth == 0:
             inside = text[at : close + 1]
-            apart = _BEFORE_BRACKET.search(text[:at]) and _MOVES.search(inside)
+            apart = _BEFORE_BRACKET.search(text[:at]) and _moves(inside, words)
             return f"{text[:at]}d/dt{inside}{text[end:]}" if apart else text
     return text

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from canon.expression.text.declared_names import Words
+from canon.expression.text.scope import split
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -103,6 +104,7 @@ def _with_rates(text: str, words: Words) -> str:
     def primed(found: re.Match[str]) -> str:
         known = words.declared(found["name"])
         has_rate = len(known) == 1 and words.scope.declares(f"{known[0]}_dot") and not words.declared("dot")
+        has_rate = has_rate and not split("dot", words.scope)
         return f"{found['name']}{chr(39) * (2 if found['two'] else 1)}" if has_rate else found.group()
 
     return _RATE.sub(primed, text)
