@@ -108,7 +108,8 @@ def _without_primes_on_brackets(text: str, words: Words) -> str:
     for _ in range(4):
         places = [*_ON_BRACKET.finditer(text)]
         made = next(
-            (new for found in places if (new := _derived(text, found.start(), found.end(), words)) != text), text
+            (new for found in places if (new := _derived(text, found.start(), found.end(), words)) != text),
+            text,
         )
         if made == text:
             break

@@ -24,7 +24,7 @@ __all__ = ["is_prose", "without_prose"]
 _MARKS = re.compile(r"\s*(?:(?:[>✅☑✔→⟶•▪⇒⟹∴]|=>|-{1,2}>|<=>|#{1,6}(?=\s))\s*)*(?:\*\*(?=[^\W\d_]{2}))?")
 _BULLET = re.compile(r"\s*[-*]\s+")
 _WORD = (
-    r"(?:(?:[Ee]qn?s?|[Ss]oln?|[Aa]ns)\.(?=[ :])"
+    r"(?:[Ss]i (?:ottiene|ha|trova|ricava|scrive)(?!\w)|(?:[Ee]qn?s?|[Ss]oln?|[Aa]ns)\.(?=[ :])"
     r"|(?:(?:[cdjlmst]|[CDJLMST]|[Qq]u)['’])?[^\W\d_]{2,}(?:['’][^\W\d_]{1,9})?(?:[.-][^\W\d_]+)*|[^\W\d_](?!['’]))"
 )
 _ELIDED = re.compile(r"^(?:[cdjlmst]|qu|all|dall|dell|nell|sull)['’](?=[^\W\d_]{2})", re.IGNORECASE)
@@ -46,9 +46,15 @@ _SENTENCE = re.compile(
     re.IGNORECASE,
 )
 """What may be said of a formula behind it: for whom it holds, what a letter is, what it is called."""
+_CALLED = re.compile(
+    rf"(?<=[\w)\]}}'′″²³$])(?:\s[—–]\s+|,?\s(?=(?:is|ist|est|es|è)\s))(?P<words>{_WORD}(?:[ -]{_WORD}){{1,9}})[\s.]*$"
+)
+"""What an equation is called behind it."""
 _LONGEST_SENTENCE = 240
 """Characters of a sentence that is looked for behind a formula."""
 _MOST_WORDS = 12
+_CONSTANT = frozenset(("constant", "constants", "conserved"))
+"""Words that say something of what stands before them."""
 
 
 def without_prose(text: str, scope: Scope) -> str:
@@ -126,7 +132,7 @@ def _lead_end(text: str, begin: int, scope: Scope) -> int:
         if found is None or not is_prose([found["word"]], scope):
             break
         at = found.end()
-        if found["word"].lower() in LEADING:
+        if _ELIDED.sub("", found["word"]).lower() in LEADING:
             end = at
         if re.match(r"(?:\$\$?|\\[\[(])\s*[^\s=+*/^][^=]{0,99}=", text[at:]):  # dollars end the words
             end = at
@@ -137,7 +143,11 @@ def _end(text: str, begin: int, scope: Scope) -> int:
     """Return where a sentence behind the formula begins."""
     if (concluded := start_of_sentence_behind(text, begin)) < len(text):
         return concluded
-    found = _SENTENCE.search(text, max(begin, len(text) - _LONGEST_SENTENCE))
+    tail = max(begin, len(text) - _LONGEST_SENTENCE)
+    called = _CALLED.search(text, tail) if "=" in text[begin:] else None
+    if called and is_prose(words := re.findall(_WORD, called["words"]), scope) and not _CONSTANT & {*words}:
+        return called.start()
+    found = _SENTENCE.search(text, tail)
     if found is None or not re.search(r"[\w)\]}'′″²³$]$", text[begin : found.start()]):
         return len(text)
     said = re.findall(_WORD, found["role"] or found["words"] or "all")

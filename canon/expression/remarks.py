@@ -48,6 +48,8 @@ _BEHIND_ROW = re.compile(
 _UNIT = re.compile(r"(?<=[\w)\]}'′″])[ \t]{1,9}\[([^\[\]]{1,40})\][\s.]{0,9}$")
 _LONGEST = 160
 """Characters of a remark that is looked for behind a formula."""
+_LONG = 9
+"""Letters of a word that is a remark by itself."""
 _NAMED = frozenset(("Newton", "Lagrange", "Hamilton", "Hooke", "Kepler", "EOM", "ODE"))
 """Words that are a remark by themselves."""
 _FORCES = frozenset((
@@ -173,7 +175,8 @@ def _says_nothing(remark: str, scope: Scope) -> bool:
     found = remark.split()
     if remark.strip() in _FORCES:
         return not any(_is_known(word, scope) for word in found)
-    return (len(found) > 1 and is_prose(found, scope)) or remark.strip() in _NAMED
+    several = len(found) > 1 or len(remark.strip()) >= _LONG  # a short word may be a product of letters
+    return (several and is_prose(found, scope)) or remark.strip() in _NAMED
 
 
 def _is_known(letters: str, scope: Scope) -> bool:

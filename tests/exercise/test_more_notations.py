@@ -46,17 +46,23 @@ def both(kind, key, said, right, wrong, **keys):
 
 
 AROUND = [
-    "Ответ: {}", "Следовательно, уравнение движения имеет вид {}", "Уравнение движения: {}", "Рівняння руху: {}",
-    "On en déduit l'équation du mouvement : {}", "D'où l'équation : {}", "Donc l'équation du mouvement est {}",
-    "Equazione del moto: {}", "Quindi l'equazione del moto è {}", "L'équation du mouvement s'écrit : {}",
-    "Por lo tanto, la ecuación de movimiento es {}", "La ecuación del movimiento queda {}", "Equação do movimento: {}",
-    "Portanto, a equação é {}", "Równanie ruchu: {}", "Pohybová rovnice: {}", "Rörelseekvationen blir {}", "Kurz: {}",
-    "Bevægelsesligningen: {}", "De bewegingsvergelijking luidt {}", "A mozgásegyenlet: {}", "Hareket denklemi: {}",
-    "Ecuația de mișcare: {}", "Liikeyhtälö: {}", "Εξίσωση κίνησης: {}", "Άρα {}",
-    "Bewegungsgleichung des Federpendels: {}",
-    "运动方程为：{}", "运动方程：{}。", "よって運動方程式は {} となる。", "運動方程式は {} である。",
-    "答え：{}", "운동방정식: {}",
-    "운동방정식은 {} 이다.", "{} (équation du mouvement)", "The equation of motion of the block: {}", "{}:",
+    "Ответ: {}", "Следовательно, уравнение движения имеет вид {}", "Уравнение движения: {}",
+    "Рівняння руху: {}", "On en déduit l'équation du mouvement : {}", "D'où l'équation : {}",
+    "Donc l'équation du mouvement est {}", "Equazione del moto: {}", "Quindi l'equazione del moto è {}",
+    "L'équation du mouvement s'écrit : {}", "Por lo tanto, la ecuación de movimiento es {}",
+    "La ecuación del movimiento queda {}", "Equação do movimento: {}", "Portanto, a equação é {}",
+    "Równanie ruchu: {}", "Pohybová rovnice: {}", "Rörelseekvationen blir {}", "Kurz: {}",
+    "Bevægelsesligningen: {}", "De bewegingsvergelijking luidt {}", "A mozgásegyenlet: {}",
+    "Hareket denklemi: {}", "Ecuația de mișcare: {}", "Liikeyhtälö: {}", "Εξίσωση κίνησης: {}", "Άρα {}",
+    "Bewegungsgleichung des Federpendels: {}", "运动方程为：{}", "运动方程：{}。",
+    "よって運動方程式は {} となる。", "運動方程式は {} である。", "答え：{}", "운동방정식: {}",
+    "Damit ergibt sich die Bewegungsgleichung zu {}", "Die Euler-Lagrange-Gleichung liefert {}", "Es gilt: {}",
+    "Finalement, {}", "L'équation de Lagrange donne {}", "En simplifiant : {}", "Se obtiene {}", "Así que {}",
+    "Da cui {}", "Si ottiene {}", "Ответ. {}", "Lösung. {}", "Vi får {}", "所以 {}", "因此，{}",
+    "由拉格朗日方程得 {}", "したがって {}", "따라서 {}", "{} (Newton's second law)",
+    "{} (Schwingungsgleichung)", "{} — the equation of motion", "{} ist die Bewegungsgleichung.",
+    "{}, c.q.f.d.", "운동방정식은 {} 이다.", "{} (équation du mouvement)",
+    "The equation of motion of the block: {}", "{}:",
 ]  # fmt: skip
 
 
@@ -76,31 +82,33 @@ def test_sentences_around_latex(said):
 
 DENIED = [
     "not {}", "nicht: {}", "Nicht so: {}", "Das ist nicht die Gleichung: {}", "Keine Bewegungsgleichung: {}",
-    "Ce n'est pas l'équation : {}", "L'équation n'est pas : {}", "L'équation du mouvement n'est pas {}", "Faux : {}",
-    "No es cierto: {}", "No es la ecuación: {}", "La ecuación no es {}", "Non è l'equazione: {}", "Non vale: {}",
-    "L'equazione del moto non è {}", "Неверно: {}", "Не верно, что {}", "Это не так: {}", "Нельзя сказать, что {}",
-    "Уравнение не имеет вид {}", "Nieprawda: {}", "To nie jest równanie ruchu: {}", "Špatně: {}", "Neplatí: {}",
-    "A equação não é {}", "Det er ikke: {}", "Liikeyhtälö ei ole: {}", "Nem: {}", "Değil: {}", "Δεν ισχύει: {}",
-    "Λάθος: {}", "不对：{}", "这不是运动方程：{}", "错误：{}", "運動方程式は {} ではない。",
-    "運動方程式は {} とはならない。",
-    "よって {} とならない。", "正しくない式：{}", "{} とは限らない。", "运动方程为 {} 不成立",
-    "운동방정식은 {} 이 아니다.",
-    "{} is wrong", "{} ist falsch", "{} est faux", "{} es falso", "{} неверно", "{} (falsch)", "{} (not correct)",
-    "{} (nicht richtig)", "{}?", "Impossible: {}", "Unmöglich: {}", "It cannot be: {}", "We do not get {}",
-    "Wrong equation: {}", "Falsche Gleichung: {}", "Équation fausse : {}", "Ecuación falsa: {}",
-    "Ошибочное уравнение: {}",
-    "x'' = 0 und nicht {}", "{} et non x'' = 0", "{} y no x'' = 0", "{} и не x'' = 0", "لا: {}", "לא: {}", "नहीं: {}",
-    "The opposite equation: {}", "Twice the equation: {}", "If the spring is weak, the equation: {}",
-    "Equation of my friend, who says: {}", "Gegenbeispiel zur Gleichung: {}", "Fake answer: {}", "Bogus: {}",
-    "Xyzzy: {}",
+    "Ce n'est pas l'équation : {}", "L'équation n'est pas : {}", "L'équation du mouvement n'est pas {}",
+    "Faux : {}", "No es cierto: {}", "No es la ecuación: {}", "La ecuación no es {}", "Non è l'equazione: {}",
+    "Non vale: {}", "L'equazione del moto non è {}", "Неверно: {}", "Не верно, что {}", "Это не так: {}",
+    "Нельзя сказать, что {}", "Уравнение не имеет вид {}", "Nieprawda: {}", "To nie jest równanie ruchu: {}",
+    "Špatně: {}", "Neplatí: {}", "A equação não é {}", "Det er ikke: {}", "Liikeyhtälö ei ole: {}", "Nem: {}",
+    "Değil: {}", "Δεν ισχύει: {}", "Λάθος: {}", "不对：{}", "这不是运动方程：{}", "错误：{}",
+    "運動方程式は {} ではない。", "運動方程式は {} とはならない。", "よって {} とならない。",
+    "正しくない式：{}", "{} とは限らない。", "运动方程为 {} 不成立", "운동방정식은 {} 이 아니다.",
+    "{} is wrong", "{} ist falsch", "{} est faux", "{} es falso", "{} неверно", "{} (falsch)",
+    "{} (not correct)", "{} (nicht richtig)", "{}?", "Impossible: {}", "Unmöglich: {}", "It cannot be: {}",
+    "We do not get {}", "Wrong equation: {}", "Falsche Gleichung: {}", "Équation fausse : {}",
+    "Ecuación falsa: {}", "Ошибочное уравнение: {}", "x'' = 0 und nicht {}", "{} et non x'' = 0",
+    "{} y no x'' = 0", "{} и не x'' = 0", "لا: {}", "לא: {}", "नहीं: {}", "The opposite equation: {}",
+    "Twice the equation: {}", "If the spring is weak, the equation: {}", "Equation of my friend, who says: {}",
+    "Gegenbeispiel zur Gleichung: {}", "The sign of the equation is swapped: {}",
+    "It would be the equation: {}", "{} is no equation of motion", "{} ist nicht die Bewegungsgleichung.",
+    "{} n'est pas l'équation du mouvement", "{} no es la ecuación", "{} — not the equation of motion",
+    "Nicht die Lösung. {}", "Fake answer: {}", "Bogus: {}", "Xyzzy: {}",
 ]  # fmt: skip
 OPEN = [
     "{} or m x'' = k x", "{} oder m x'' = k x", "{} ou m x'' = k x", "{} o m x'' = k x", "{} или m x'' = k x",
-    "{} lub m x'' = k x", "{} eller m x'' = k x", "{} または m x'' = k x", "{} 或 m x'' = k x", "{} 또는 m x'' = k x",
-    "either {} or m x'' = k x", "Entweder {} oder m x'' = k x", "Maybe the equation is: {}", "Vielleicht: {}",
-    "Peut-être l'équation : {}", "Quizás la ecuación: {}", "Forse l'equazione: {}", "Может быть, уравнение: {}",
-    "おそらく運動方程式は {}", "多分：{}", "I doubt the equation: {}", "Je pense que l'équation est : {}",
-    "Approximately the equation: {}", "{} lorsque k = 0",
+    "{} lub m x'' = k x", "{} eller m x'' = k x", "{} または m x'' = k x", "{} 或 m x'' = k x",
+    "{} 또는 m x'' = k x", "either {} or m x'' = k x", "Entweder {} oder m x'' = k x",
+    "Maybe the equation is: {}", "Vielleicht: {}", "Peut-être l'équation : {}", "Quizás la ecuación: {}",
+    "Forse l'equazione: {}", "Может быть, уравнение: {}", "おそらく運動方程式は {}", "多分：{}",
+    "I doubt the equation: {}", "Je pense que l'équation est : {}", "Approximately the equation: {}",
+    "{} lorsque k = 0",
 ]  # fmt: skip
 
 
@@ -138,9 +146,10 @@ JOINED = [
     "m x'' = {}k x & m z'' = -k z", "m x'' = {}k x   |   m z'' = -k z", "m x'' = {}k x、 m z'' = -k z。",
     "m x'' = {}k x，m z'' = -k z。", "m x'' = {}k x。m z'' = -k z。", "ｍ x'' ＝ {}ｋｘ；ｍ z'' ＝ －ｋｚ",
     "$m\\ddot x = {}kx$ y $m\\ddot z = -kz$", "$m\\ddot x = {}kx$ и $m\\ddot z = -kz$",
-    "$m\\ddot x = {}kx \\quad\\text{oraz}\\quad m\\ddot z = -kz$", "$m\\ddot x = {}kx \\text{ y } m\\ddot z = -kz$",
-    "m x'' = {}k x, also x'' = {}k x/m; m z'' = -k z", "m z'' = -k z, donc m x'' = {}k x",
-    "**1.** $m\\ddot x = {}kx$\n\n**2.** $m\\ddot z = -kz$", "1) m x'' = {}k x\n2) m z'' = -k z",
+    "$m\\ddot x = {}kx \\quad\\text{oraz}\\quad m\\ddot z = -kz$",
+    "$m\\ddot x = {}kx \\text{ y } m\\ddot z = -kz$", "m x'' = {}k x, also x'' = {}k x/m; m z'' = -k z",
+    "m z'' = -k z, donc m x'' = {}k x", "**1.** $m\\ddot x = {}kx$\n\n**2.** $m\\ddot z = -kz$",
+    "1) m x'' = {}k x\n2) m z'' = -k z",
 ]  # fmt: skip
 
 
@@ -188,8 +197,10 @@ DEFINED = [
     (PENDULUM, "θ'' + ω₀² sin θ = 0 con ω₀² = {}", "g/l", "g/(2 l)"),
     (
         PENDULUM,
-        r"Daraus folgt die Bewegungsgleichung $$\ddot\theta = -\omega_0^2\sin\theta \quad\text{mit}\quad "
-        r"\omega_0^2 = {}.$$",
+        (
+            r"Daraus folgt die Bewegungsgleichung $$\ddot\theta = -\omega_0^2\sin\theta \quad\text{mit}\quad "
+            r"\omega_0^2 = {}.$$"
+        ),
         "g/l",
         "l/g",
     ),

@@ -14,8 +14,11 @@ def _words(text: str) -> frozenset[str]:
     return frozenset(text.split())
 
 
-HARMLESS = _words(
-    """
+_TOGETHER = frozenset(("si ottiene", "si ha", "si trova", "si ricava", "si scrive"))
+"""Words that lead to a formula only together: *si* alone is *if*."""
+HARMLESS = (
+    _words(
+        """
     a an and as at by from in is it its of on so the to we all are this that these which where here there then
     thus hence therefore finally now also have has get gets got find found obtain obtains obtained gives give
     yields follows follow leads reads becomes equals using use used apply applying simplifying solving solved be
@@ -65,21 +68,30 @@ HARMLESS = _words(
     periodo fuerzas ligadura movimientos péndulo accelerazione accelerazioni velocità frequenza reazione vincolo
     impulso funzione pendolo aceleração velocidade tensão frequência versnelling spankracht snelheid
     przyspieszenie napięcie naciąg prędkość zrychlení napětí период ускорения натяжения реакции связь маятник
-    accelerationen
+    accelerationen zu liefert donne teil simplifiant simplification simplified simplify vi first second third
+    schwingungsgleichung harmonischer harmonischen harmonische oszillator oszillators oscillateur harmonique
+    oscilador armónico oscillatore armonico osciladores гармонический осциллятор рода sho shm ricava scrive
+    lagrange-gleichung lagrange-gleichungen
     """
+    )
+    | _TOGETHER
 )
 """Words that name a formula or lead to it and never change what it says; any other word is read as a part of it."""
-LEADING = _words(
-    """
+LEADING = (
+    _words(
+        """
     also are becomes equals find follows get gets gives have hence is obtain obtains reads so that then therefore
     thus yields lautet lauten ist folgt ergibt somit daher dann donc ainsi alors est trouve obtient tanto entonces
     luego es resulta obtenemos write writes gilt folglich obtenons trouvons déduit vaut valent vient vale valen
-    queda son tiene tenemos sono è quindi dunque perciò pertanto otteniamo ottiene abbiamo segue portanto logo então
-    obtemos obtém são é temos dus krijgen volgt luidt geldt zatem więc stąd otrzymujemy mamy jest są tedy proto
-    dostaneme dostáváme platí je jsou alltså blir är får altså derfor tehát így böylece deci rezultă obținem siis
-    вид получаем получим следовательно отсюда тогда образом итак значит равна равно равен равны находим имеем есть
-    что отже маємо отримуємо звідси следователно получаваме άρα επομένως συνεπώς είναι προκύπτει έχουμε τελικά
+    queda son tiene tenemos sono è quindi dunque perciò pertanto otteniamo ottiene abbiamo segue portanto logo
+    então obtemos obtém são é temos dus krijgen volgt luidt geldt zatem więc stąd otrzymujemy mamy jest są tedy
+    proto dostaneme dostáváme platí je jsou alltså blir är får altså derfor tehát így böylece deci rezultă obținem
+    siis вид получаем получим следовательно отсюда тогда образом итак значит равна равно равен равны находим имеем
+    есть что отже маємо отримуємо звідси следователно получаваме άρα επομένως συνεπώς είναι προκύπτει έχουμε
+    τελικά zu liefert donne finalement où obtiene que da cui
     """
+    )
+    | _TOGETHER
 )
 """Those of them that a formula may follow."""
 ALSO = _words("and und et y e и та και oraz og och en ve és și şi sowie 和 及 与 與 以及 と 및 & |")
@@ -116,10 +128,15 @@ _DENIED = re.compile(
     |hardly|barely|kaum|rarely|selten|hypoth.*|example|beispiel.*|exemple|ejemplo|esempio|przykład.*|пример.*
     |question|frage|pregunta|domanda|вопрос.*|pytanie|given|gegeben.*|donné.*|dado.*|dato|dati|дано|dane
     |or|oder|ou|o|u|ó|où\?|eller|lub|albo|bądź|nebo|anebo|ili|или|либо|або|чи|vai|või|tai|vagy|sau|ori|veya|yahut
-    |atau|either|entweder|ή|είτε|soit|sea|maybe|perhaps|peut|être|doubt.*|zweif.*|bezweif.*|doute.*|dud[ao].*|dubbi.*|сомн.*|fake.*|geraten|vielleicht|eventuell.*|evtl|forse|quiz.s|tal|talvez
+    |atau|either|entweder|ή|είτε|soit|sea|maybe|perhaps|peut|être|doubt.*
+    |zweif.*|bezweif.*|doute.*|dud[ao].*|dubbi.*|сомн.*|fake.*|geraten
+    |vielleicht|eventuell.*|evtl|forse|quiz.s|tal|talvez
     |może|możliwe|возможно|может|možná|misschien|wellicht|kanske|kanskje|måske|ehkä|talán|belki|poate|ίσως|proba.*
     |wahrsch.*|vermut.*|вероятно|наверное|видимо|pravděpod.*|prawdopod.*|proba.*|guess.*|think.*|believ.*|suppos.*
-    |assum.*|annahme.*|angenomm.*|glaube.*|denke.*|crois|pense|creo|credo|penso|думаю|кажется|alternat.*|another
+    |assum.*|annahme.*|angenomm.*|glaube.*|denke.*|crois|pense|would|could|should|might|may|sollte.*|könn.*|würde.*|wäre.*
+    |serai.*|devrait|pourrait|sería|debería|podría|sarebbe|dovrebbe|potrebbe|powinn.*|должн.*|бы|lack.*|manqu.*|falta.*
+    |manca.*|brak.*|swap.*|flip.*|vertausch.*|sign|vorzeichen.*|signe|signo|segno|знак.*|up|bis|près|factor|faktor.*
+    |facteur|fattore|other|creo|credo|penso|думаю|кажется|alternat.*|another
     |autre.*|otra.*|otro.*|altra.*|altro.*|друг.*|oder|andere.*|if|wenn|falls|si|se|если|якщо|jeśli|jeżeli|pokud
     |ako|αν|εάν|hvis|om|als|ha|dacă|eğer|jos|unless|except|außer|sauf|salvo|кроме|only|nur|seul.*|solo|sólo|tylko
     |только|almost|nearly|approx.*|näherung.*|ungefähr|annähernd|environ|presque|casi|quasi|circa|około|примерн.*
@@ -137,9 +154,9 @@ Words that begin as negations do are among them, though many say something else:
 written again.
 """
 EASTERN = re.compile(
-    "方程|運動|运动|答|解|結果|结果|張力|拉力|力|速度|エネルギー|ハミルトニアン|ラグランジアン|運動量|动量|能量|式|답|해|운동|방정식|장력|가속도|에너지"
+    "方程|運動|运动|答|解|結果|结果|張力|拉力|力|速度|所以|因此|得到|从而|したがって|従って|ゆえに|故に|よって|따라서|그러므로|エネルギー|ハミルトニアン|ラグランジアン|運動量|动量|能量|式|답|해|운동|방정식|장력|가속도|에너지"
 )
-"""Words of Chinese, Japanese and Korean that name a formula, at least one of which stands before it."""
+"""Words of Chinese, Japanese and Korean that name a formula or lead to it, at least one of which stands before it."""
 _SIGNS_OF_DENIAL = re.compile(
     "[不没沒非无無未否错錯誤误假或若如果但勿莫反非異异别別除嘘違禁絶才只仅僅約约近疑問问旧例]|ない|ぬ|ません|なし|なく|なかっ|ず|まい|では|じゃ"
     "|また|もし|あるい|かも|だろう|でしょ|おそらく|たぶん|多分|恐らく|きっと|はず|らし|そう|と思|うそ|ウソ|ダメ|だめ|たら|れば|なら|か[、。?？]|か$"

@@ -28,6 +28,11 @@ _LABEL = re.compile(
     r"\s*(?P<said>[^\W\d_](?:[^\W\d_]|[ ,.'’`«»„“”-]){1,118}?)[*_]{0,2}\s?:(?![:=])[*_]{0,2}\s*(?=[^\s:=+*/^<>)])"
 )
 """Words up to a colon."""
+_TITLE = re.compile(
+    r"\s*(?P<said>Answer|Solution|Result|Antwort|Lösung|Ergebnis|Réponse|Résultat|Respuesta|Solución|Risposta|Soluzione"
+    r"|Resposta|Odpowiedź|Rozwiązanie|Ответ|Решение|Відповідь|Svar)\.\s+(?=[^\s:=+*/^<>)])"
+)
+"""Titles with a full stop, as books set them."""
 _OTHER_SCRIPT = re.compile(
     rf"\s*(?P<said>(?:[{_EAST}{_CYRILLIC}]+['’]?(?:\s?[,、，:]\s?|\s+|\b|(?<=[{_EAST}]))){{1,12}})(?=[^\s=+*/^<>)])"
 )
@@ -58,6 +63,9 @@ def end_of_sentence(text: str, begin: int, scope: Scope) -> int:
     >>> [end_of_sentence(said, 0, scope) for said in ("Beschleunigung: x'' = 1", "Falsch: x'' = 1", "mit x: x'' = 1")]
     [16, 0, 0]
     """
+    title = _TITLE.match(text, begin)
+    if title and "=" in text[title.end() :] and not _is_name(title["said"], scope):
+        return title.end()
     for pattern in (_LABEL, _OTHER_SCRIPT):
         found = pattern.match(text, begin)
         if found and "=" in text[found.end() :] and _says_nothing(found["said"], scope):
@@ -97,13 +105,19 @@ def _length(word: str) -> int:
 
 def _is_word(word: str, scope: Scope) -> bool:
     """Tell whether a word is no name, no product of names, no function, and denies nothing."""
-    if word in scope.functions or scope.declares(word) or split(word, scope) or function_name(word, scope):
+    if _is_name(word, scope):
         return False
     if word.lower() in HARMLESS:
         return True
     return (
         _length(word) >= _SHORTEST and _is_known_script(word) and word not in _GREEK and not is_denial(word)
     )
+
+
+def _is_name(word: str, scope: Scope) -> bool:
+    """Tell whether a word is declared, a product of declared names, or a function."""
+    known = word in scope.functions or scope.declares(word)
+    return known or split(word, scope) != "" or function_name(word, scope) != ""
 
 
 def _is_known_script(word: str) -> bool:
