@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = ["plainly_formed"]
 
+_LONGEST = 2_000
+"""Characters of a text in which primes on brackets are looked for."""
 _NAME = r"(?:\\[A-Za-z]{1,12}|[A-Za-z])"
 _DOTS = r"(?P<dots>\.{1,2}|\\cdot|\\cdot\s?\\cdot)"
 _ABOVE = re.compile(
@@ -71,7 +73,7 @@ def plainly_formed(text: str, scope: Scope) -> str:
     text = _RAISED.sub(lambda found: _exponent(found.group(), scope), text)
     if "dot." in text and not scope.declares("dot"):
         text = _TYPST.sub(lambda found: found["name"] + "'" * (2 if found["two"] else 1), text)
-    if not (scope.declares("d") or "d" in scope.functions):
+    if len(text) <= _LONGEST and not (scope.declares("d") or "d" in scope.functions):
         text = _without_primes_on_brackets(text, Words(text, scope))
     equal = "=" not in text and len(_TILDE.findall(text)) == 1
     if not equal or not _JULIA.search(text) or scope.declares("D") or "D" in scope.functions:

@@ -47,7 +47,7 @@ _SENTENCE = re.compile(
 )
 """What may be said of a formula behind it: for whom it holds, what a letter is, what it is called."""
 _CALLED = re.compile(
-    rf"(?<=[\w)\]}}'′″²³$])(?:\s[—–]\s+|,?\s(?=(?:is|ist|est|es|è)\s))(?P<words>{_WORD}(?:[ -]{_WORD}){{1,9}})[\s.]*$"
+    rf"(?<=[\w)\]}}'′″²³$])(?:\s[—–]\s+|,?\s(?=(?:is|ist|est|es|è)\s))(?P<words>{_WORD}(?: {_WORD}){{1,9}})[\s.]*$"
 )
 """What an equation is called behind it."""
 _LONGEST_SENTENCE = 240

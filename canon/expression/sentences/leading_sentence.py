@@ -34,7 +34,7 @@ _TITLE = re.compile(
 )
 """Titles with a full stop, as books set them."""
 _OTHER_SCRIPT = re.compile(
-    rf"\s*(?P<said>(?:[{_EAST}{_CYRILLIC}]+['’]?(?:\s?[,、，:]\s?|\s+|\b|(?<=[{_EAST}]))){{1,12}})(?=[^\s=+*/^<>)])"
+    rf"\s*(?P<said>(?:[{_EAST}{_CYRILLIC}]++['’]?(?:\s?[,、，:]\s?|\s+|\b|(?<=[{_EAST}]))){{1,12}}+)(?=[^\s=+*/^<>)])"
 )
 """Words in letters that no formula has."""
 _CONCLUDED = re.compile(

@@ -47,6 +47,7 @@ _SAID_OF_ACCELERATION = re.compile(
     r"(?:^|[;,\n$&])\s*(?:[A-Za-z](?:_\w{1,9})?(?:''|″|′′|\u0308)|[ẍẅÿ]|\\ddot\s?\{?\s?\\?[A-Za-z]{1,9}\s?\}?(?:_\{?\w{1,9}\}?)?|\w_ddot)\s*&?=\s*[-−+]?\s*$"
 )
 """An acceleration by itself before its value."""
+_LONGEST_BEFORE = 60
 _FACTOR = re.compile(r"\s{0,9}[^\W_]|\s{0,9}[(\[√∛∜]")
 _LETTERS = re.compile(r"[A-Za-zΩ]+")
 _REMEDY = f"SI units without prefixes can stand there: {', '.join(sorted(COHERENT))}; or leave it out"
@@ -113,7 +114,11 @@ def _is_acceleration(unit: str, text: str, number: re.Match[str], scope: Scope) 
     The mass m may be declared then, for the second is not: read as factors the answer would mean nothing.
     """
     known = _ACCELERATION.fullmatch(unit.strip()) is not None and not scope.declares("s")
-    return known and _SAID_OF_ACCELERATION.search(text[: number.start()]) is not None
+    return (
+        known
+        and _SAID_OF_ACCELERATION.search(text, max(0, number.start() - _LONGEST_BEFORE), number.start())
+        is not None
+    )
 
 
 def _declares(unit: str, scope: Scope) -> bool:

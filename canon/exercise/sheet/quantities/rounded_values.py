@@ -20,7 +20,7 @@ _ROUNDED = re.compile(
     r"(?P<degrees>\s?(?:°|\^\s?\{?\s?\\circ\s?\}?|\\degree))?(?=[\s.$]*$)"
 )
 _GREATEST_EXPONENT = 20
-_SIDE = re.compile(r"[^=≈<>]*$")
+_LONGEST = 2_000
 
 
 def without_rounded(text: str, scope: Scope) -> tuple[str, str]:
@@ -32,11 +32,10 @@ def without_rounded(text: str, scope: Scope) -> tuple[str, str]:
     >>> without_rounded("x = sqrt(2) ≈ 1.41", Scope()), without_rounded("x = sqrt(2) ≈ 1.42", Scope())[1]
     (('x = sqrt(2)       ', '≈ 1.41'), '')
     """
-    found = _ROUNDED.search(text)
+    found = _ROUNDED.search(text) if len(text) <= _LONGEST else None
     if found is None:
         return text, ""
-    side = _SIDE.search(text[: found.start()])
-    said = side.group().strip(" $") if side else ""
+    said = re.split("[=≈<>]", text[: found.start()])[-1].strip(" $")
     try:
         exact = parse_expression(f"${said}$" if is_latex(text) else said, scope)
     except LanguageError:
