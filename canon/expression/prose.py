@@ -49,12 +49,15 @@ _SENTENCE = re.compile(
 _CALLED = re.compile(
     rf"(?<=[\w)\]}}'′″²³$])(?:\s[—–]\s+|,?\s(?=(?:is|ist|est|es|è)\s))(?P<words>{_WORD}(?: {_WORD}){{1,9}})[\s.]*$"
 )
-"""What an equation is called behind it."""
+"""Words behind an equation, after a dash or *is*."""
 _LONGEST_SENTENCE = 240
 """Characters of a sentence that is looked for behind a formula."""
 _MOST_WORDS = 12
-_CONSTANT = frozenset(("constant", "constants", "conserved"))
-"""Words that say something of what stands before them."""
+_EQUATION = frozenset((
+    "equation", "equations", "answer", "solution", "result", "bewegungsgleichung", "bewegungsgleichungen", "gleichung",
+    "lösung", "ergebnis", "équation", "équations", "ecuación", "ecuaciones", "equazione", "equazioni", "equação",
+))  # fmt: skip
+"""What an equation is called behind it."""
 
 
 def without_prose(text: str, scope: Scope) -> str:
@@ -144,14 +147,19 @@ def _end(text: str, begin: int, scope: Scope) -> int:
     if (concluded := start_of_sentence_behind(text, begin)) < len(text):
         return concluded
     tail = max(begin, len(text) - _LONGEST_SENTENCE)
-    called = _CALLED.search(text, tail) if "=" in text[begin:] else None
-    if called and is_prose(words := re.findall(_WORD, called["words"]), scope) and not _CONSTANT & {*words}:
-        return called.start()
     found = _SENTENCE.search(text, tail)
     if found is None or not re.search(r"[\w)\]}'′″²³$]$", text[begin : found.start()]):
-        return len(text)
+        return _end_before_its_name(text, begin, tail, scope)
     said = re.findall(_WORD, found["role"] or found["words"] or "all")
     return found.start() if is_prose(said, scope) else len(text)
+
+
+def _end_before_its_name(text: str, begin: int, tail: int, scope: Scope) -> int:
+    """Return where an equation ends that is called one behind it; ``m is the mass`` says something of a letter."""
+    called = _CALLED.search(text, tail) if "=" in text[begin:] else None
+    words = re.findall(_WORD, called["words"]) if called else []
+    named = _EQUATION & {word.lower() for word in words}
+    return called.start() if called and named and is_prose(words, scope) else len(text)
 
 
 def is_prose(said: list[str], scope: Scope) -> bool:

@@ -99,7 +99,8 @@ DENIED = [
     "Gegenbeispiel zur Gleichung: {}", "The sign of the equation is swapped: {}",
     "It would be the equation: {}", "{} is no equation of motion", "{} ist nicht die Bewegungsgleichung.",
     "{} n'est pas l'équation du mouvement", "{} no es la ecuación", "{} — not the equation of motion",
-    "Nicht die Lösung. {}", "Fake answer: {}", "Bogus: {}", "Xyzzy: {}",
+    "{} m is the mass", "{} and m is the mass", "{}, k is it", "Nicht die Lösung. {}", "Fake answer: {}",
+    "Bogus: {}", "Xyzzy: {}",
 ]  # fmt: skip
 OPEN = [
     "{} or m x'' = k x", "{} oder m x'' = k x", "{} ou m x'' = k x", "{} o m x'' = k x", "{} или m x'' = k x",

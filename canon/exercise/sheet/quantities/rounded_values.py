@@ -56,9 +56,10 @@ def _is_small(exact: sp.Expr) -> bool:
 
 
 def _rounds(exact: sp.Expr, found: re.Match[str]) -> bool:
-    """Tell whether a number is an exact one to its last figure, or one off it where that was cut and not rounded."""
+    """Tell whether a number is an exact one to its last figure, rounded there or cut."""
     figures = re.sub(r"\{?,\}?", ".", found["number"].replace("−", "-"))
     unit = sp.pi / 180 if found["degrees"] else sp.S.One
     last = sp.Rational(1, 10 ** len(figures.partition(".")[2]))
-    off = sp.N(abs(exact / unit - sp.Rational(figures)), 30)
-    return bool(off <= last)
+    beyond = sp.N(sp.Abs(exact / unit) - abs(sp.Rational(figures)), 30)
+    same_sign = bool((exact >= 0) == (sp.Rational(figures) >= 0))
+    return same_sign and bool(-last / 2 <= beyond) and bool(beyond < last)
