@@ -13,10 +13,13 @@ from typing import TYPE_CHECKING, cast
 from sympy import Expr, Rational
 
 from canon.expression.builder import Builder
+from canon.expression.copied_forms import plainly_formed
 from canon.expression.physics_package import written_out
 from canon.expression.program_marks import without_program_marks
 from canon.expression.prose import without_prose
 from canon.expression.remarks import without_remarks
+from canon.expression.sentences.dictation import written_from_dictation
+from canon.expression.sentences.joined_equations import plainly_joined
 from canon.expression.symbols.user_input import given_kind
 from canon.expression.text import syntax
 from canon.expression.text.juxtaposition import parse_juxtaposed
@@ -138,9 +141,12 @@ def _syntax(text: str, scope: Scope) -> syntax.Node:
 
 def _without_what_is_around(text: str, scope: Scope) -> str:
     """Return a text without markup, prose and remarks around its formula, every column where it was."""
-    plain = with_primes(unmarked(without_program_marks(text, scope)), scope)
+    written = written_from_dictation(without_program_marks(text, scope), scope)
+    joined = plainly_joined(written, scope)
+    plain = with_primes(unmarked(joined), scope)
     bare = without_prose(plain, scope)
-    return written_out(without_remarks(plain if bare == plain else unmarked(bare), scope))
+    remarked = without_remarks(plain if bare == plain else unmarked(bare), scope)
+    return written_out(plainly_formed(remarked, scope))
 
 
 _kept_syntax = functools.lru_cache(maxsize=256)(_syntax)

@@ -10,7 +10,7 @@ __all__ = ["written_out"]
 
 _BRACED = r"\s{0,9}\{((?:[^{}]|\{(?:[^{}]|\{[^{}]{0,99}\}){0,99}\}){0,200})\}"
 _DERIVATIVE = re.compile(
-    rf"\\(odv|pdv|dv|partialderivative|derivative)\s{{0,9}}(?:\[\s{{0,9}}([1-9])\s{{0,9}}\])?"
+    rf"\\(odv|pdv|dv|partialderivative|derivative|diffp|diff|od|pd)(?=\s{{0,9}}[\[{{])\s{{0,9}}(?:\[\s{{0,9}}([1-9])\s{{0,9}}\])?"
     rf"{_BRACED}(?:{_BRACED})?(?:{_BRACED})?"
 )
 _MOST = 4
@@ -41,7 +41,7 @@ def _fraction(found: re.Match[str]) -> str:
     word, order, first, *others = found.groups()
     variables = [other for other in others if other is not None]
     of, variables = (first, variables) if variables else ("", [first])
-    mark = "\\partial" if word.startswith("p") else "d"
+    mark = "\\partial" if word.startswith("p") or word == "diffp" else "d"
     power = order or (str(len(variables)) if variables[1:] else "")
     raised = f"^{{{power}}}" if power else ""
     below = "".join(f"{_beside(mark, name)}{f'^{{{order}}}' if order else ''}" for name in variables)

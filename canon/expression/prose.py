@@ -10,7 +10,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from canon.expression.sentences.known_words import HARMLESS, LEADING
+from canon.expression.sentences.leading_sentence import end_of_sentence, start_of_sentence_behind
 from canon.expression.symbols.symbol import Coordinate
+from canon.expression.text.scope import split
 from canon.expression.text.tokens import MAX_CHARACTERS
 
 if TYPE_CHECKING:
@@ -18,41 +21,6 @@ if TYPE_CHECKING:
 
 __all__ = ["is_prose", "without_prose"]
 
-_VOCABULARY = frozenset((
-    "a", "an", "and", "as", "at", "by", "from", "in", "is", "it", "its", "of", "on", "so", "the", "to", "we",
-    "all", "are", "this", "that", "these", "which", "where", "here", "there", "then", "thus", "hence",
-    "therefore", "finally", "now", "also", "have", "has", "get", "gets", "got", "find", "found", "obtain",
-    "obtains", "obtained", "gives", "give", "yields", "follows", "follow", "leads", "reads", "becomes",
-    "equals", "using", "use", "used", "apply", "applying", "simplifying", "solving", "solved", "be", "into",
-    "our", "my", "one", "i", "equation", "equations", "motion", "system", "systems", "answer", "answers",
-    "result", "results", "solution", "final", "formula", "expression", "form", "forms", "problem", "part",
-    "case", "law", "laws", "principle", "definition", "hamiltonian", "lagrangian", "routhian", "kamiltonian",
-    "momentum", "momenta", "energy", "function", "kinetic", "potential", "total", "conserved", "constant",
-    "constants", "coordinate", "coordinates", "canonical", "generalized", "generalised", "lagrange", "hamilton",
-    "newton", "euler", "hooke", "kepler", "poisson", "bracket", "brackets", "simple", "harmonic", "oscillator",
-    "pendulum", "spring", "mass", "length", "gravity", "gravitational", "acceleration", "angular", "frequency",
-    "natural", "velocity", "speed", "time", "radius", "angle", "angles", "well", "known", "standard", "usual",
-    "required", "desired", "new", "transformed", "corresponding", "order", "differential", "ordinary",
-    "eq", "eqs", "eqn", "eqns", "sol", "soln", "ans", "dynamics", "ode", "eom",
-    "denotes", "denote", "called", "for", "every", "any", "der", "die", "das", "den",
-    "dem", "des", "ein", "eine", "ist", "sind", "lautet", "lauten", "somit", "daher", "damit", "daraus", "dies",
-    "dieses", "folgt", "ergibt", "erhält", "erhalten", "man", "wir", "sich", "bewegungsgleichung",
-    "bewegungsgleichungen", "gleichung", "gleichungen", "lösung", "antwort", "ergebnis", "energie",
-    "hamiltonfunktion", "lagrangefunktion", "impuls", "federkonstante", "masse", "länge", "wobei", "dann",
-    "nach", "la", "le", "les", "un", "une", "du", "de", "est", "sont", "donc", "ainsi", "alors", "nous",
-    "obtient", "trouve", "avons", "équation", "équations", "mouvement", "réponse", "résultat", "énergie",
-    "hamiltonien", "lagrangien", "el", "los", "las", "una", "es", "son", "por", "lo", "tanto", "entonces",
-    "luego", "así", "obtenemos", "resulta", "queda", "ecuación", "ecuaciones", "movimiento", "respuesta",
-    "solución", "resultado", "energía", "hamiltoniano", "lagrangiano", "del", "que", "se",
-))  # fmt: skip
-"""Words that name a formula or lead to it and never change what it says; any other word is read as a part of it."""
-_LEADING = frozenset((
-    "also", "are", "becomes", "equals", "find", "follows", "get", "gets", "gives", "have", "hence", "is",
-    "obtain", "obtains", "reads", "so", "that", "then", "therefore", "thus", "yields", "lautet", "lauten",
-    "ist", "folgt", "ergibt", "somit", "daher", "dann", "donc", "ainsi", "alors", "est", "trouve", "obtient",
-    "tanto", "entonces", "luego", "es", "resulta", "obtenemos",
-))  # fmt: skip
-"""Words that a formula may follow."""
 _QUOTED = r">(?!\s*[=>])(?=[^<>=!]*=)"
 """A sign of quoted mail, which stands before an equation; before anything else it says what is greater."""
 _MARKS = re.compile(
@@ -60,14 +28,16 @@ _MARKS = re.compile(
 )
 _BULLET = re.compile(r"\s*[-*]\s+")
 _WORD = (
-    r"(?:(?:[Ee]qn?s?|[Ss]oln?|[Aa]ns)\.(?=[ :])"
-    r"|[^\W\d_]{2,}(?:['’][^\W\d_]{1,9})?(?:[.-][^\W\d_]+)*|[^\W\d_](?!['’]))"
+    r"(?:[Ss]i (?:ottiene|ha|trova|ricava|scrive)(?!\w)|(?:[Ee]qn?s?|[Ss]oln?|[Aa]ns)\.(?=[ :])"
+    r"|(?:(?:[cdjlmst]|[CDJLMST]|[Qq]u)['’])?[^\W\d_]{2,}(?:['’][^\W\d_]{1,9})?(?:[.-][^\W\d_]+)*|[^\W\d_](?!['’]))"
 )
+_ELIDED = re.compile(r"^(?:[cdjlmst]|qu|all|dall|dell|nell|sull)['’](?=[^\W\d_]{2})", re.IGNORECASE)
+"""French and Italian words before a vowel."""
 _HEADING = re.compile(
     rf"(?P<words>{_WORD}(?:[ ,]{{1,3}}{_WORD}){{0,7}})(?: ?\(?\d{{1,2}}\)?)?[*_]{{0,2}}"
     r"(?: ?:(?![=:])[*_]{0,2}(?=[\s$\\(*])|\s*\n)\s*"
 )
-_LEADING_WORD = re.compile(rf"(?P<word>{_WORD})[,:]?(?:\s+|(?=\$))")
+_LEADING_WORD = re.compile(rf"(?P<word>{_WORD})[,:]?(?:\s+|(?=\$|\\[\[(]))")
 _UPRIGHT = re.compile(
     r"\\(?:text|textrm|textbf|mathrm)\s?\{\s*(?P<words>[^\W\d_][^{}=\\$]{1,60})\}(?:\s|\\q?quad(?![A-Za-z])|\\[,;: ])*"
     r"(?=[^\s=+*/^-])"
@@ -80,9 +50,18 @@ _SENTENCE = re.compile(
     re.IGNORECASE,
 )
 """What may be said of a formula behind it: for whom it holds, what a letter is, what it is called."""
+_CALLED = re.compile(
+    rf"(?<=[\w)\]}}'′″²³$])(?:\s[—–]\s+|,?\s(?=(?:is|ist|est|es|è)\s))(?P<words>{_WORD}(?: {_WORD}){{1,9}})[\s.]*$"
+)
+"""Words behind an equation, after a dash or *is*."""
 _LONGEST_SENTENCE = 240
 """Characters of a sentence that is looked for behind a formula."""
 _MOST_WORDS = 12
+_EQUATION = frozenset((
+    "equation", "equations", "answer", "solution", "result", "bewegungsgleichung", "bewegungsgleichungen", "gleichung",
+    "lösung", "ergebnis", "équation", "équations", "ecuación", "ecuaciones", "equazione", "equazioni", "equação",
+))  # fmt: skip
+"""What an equation is called behind it."""
 
 
 def without_prose(text: str, scope: Scope) -> str:
@@ -114,7 +93,9 @@ def _beginning(text: str, scope: Scope) -> int:
     if bullet and (behind := _heading_end(text, bullet.end(), scope)) > bullet.end():
         begin = behind
     for _ in range(3):
-        found = max(step(text, begin, scope) for step in (_heading_end, _upright_end, _lead_end))
+        found = max(
+            step(text, begin, scope) for step in (_heading_end, _upright_end, _lead_end, end_of_sentence)
+        )
         marks = _MARKS.match(text, found)
         found = marks.end() if marks and found > begin else found
         if found == begin or not text[found:].strip():
@@ -146,7 +127,7 @@ def _upright_end(text: str, begin: int, scope: Scope) -> int:
     if found is None:
         return begin
     said = re.findall(_WORD, found["words"])
-    leads = found["words"].rstrip().endswith((",", ":")) or said[-1].lower() in _LEADING
+    leads = found["words"].rstrip().endswith((",", ":")) or said[-1].lower() in LEADING
     return found.end() if leads and is_prose(said, scope) else begin
 
 
@@ -158,18 +139,31 @@ def _lead_end(text: str, begin: int, scope: Scope) -> int:
         if found is None or not is_prose([found["word"]], scope):
             break
         at = found.end()
-        if found["word"].lower() in _LEADING:
+        if _ELIDED.sub("", found["word"]).lower() in LEADING:
+            end = at
+        if re.match(r"(?:\$\$?|\\[\[(])\s*[^\s=+*/^][^=]{0,99}=", text[at:]):  # dollars end the words
             end = at
     return end if re.match(r"=>|[^=+*/^]", text[end:]) else begin
 
 
 def _end(text: str, begin: int, scope: Scope) -> int:
     """Return where a sentence behind the formula begins."""
-    found = _SENTENCE.search(text, max(begin, len(text) - _LONGEST_SENTENCE))
+    if (concluded := start_of_sentence_behind(text, begin)) < len(text):
+        return concluded
+    tail = max(begin, len(text) - _LONGEST_SENTENCE)
+    found = _SENTENCE.search(text, tail)
     if found is None or not re.search(r"[\w)\]}'′″²³$]$", text[begin : found.start()]):
-        return len(text)
+        return _end_before_its_name(text, begin, tail, scope)
     said = re.findall(_WORD, found["role"] or found["words"] or "all")
     return found.start() if is_prose(said, scope) else len(text)
+
+
+def _end_before_its_name(text: str, begin: int, tail: int, scope: Scope) -> int:
+    """Return where an equation ends that is called one behind it; ``m is the mass`` says something of a letter."""
+    called = _CALLED.search(text, tail) if "=" in text[begin:] else None
+    words = re.findall(_WORD, called["words"]) if called else []
+    named = _EQUATION & {word.lower() for word in words}
+    return called.start() if called and named and is_prose(words, scope) else len(text)
 
 
 def is_prose(said: list[str], scope: Scope) -> bool:
@@ -181,6 +175,7 @@ def is_prose(said: list[str], scope: Scope) -> bool:
     >>> [is_prose(text.split(), Scope()) for text in ("equation of motion", "twice the energy", "Hooke's law", "")]
     [True, False, True, False]
     """
-    plain = [re.sub(r"['’]s$|\.$", "", word) for word in said]
-    known = all(word.lower() in _VOCABULARY for each in plain for word in each.split("-"))
-    return bool(said) and known and not any(w in scope.functions or scope.declares(w) for w in plain)
+    plain = [_ELIDED.sub("", re.sub(r"['’]s$|\.$", "", word)) for word in said]
+    known = all(word.lower() in HARMLESS for each in plain for word in each.split("-"))
+    names = any(w in scope.functions or scope.declares(w) or split(w, scope) for w in plain)
+    return bool(said) and known and not names

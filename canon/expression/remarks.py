@@ -35,19 +35,21 @@ _BEHIND = re.compile(
     rf"[(\[](?P<name>{_NUMBER}|[a-h]|{_ROMAN}|\*{{1,3}})[)\]]\}}?(?=\s*(?:\$\$?|\\\]|\\\))?[\s.,]*(?:$|\\\\))"
 )
 """The same behind an equation, at the end of a text or a row."""
-_WORDS = re.compile(r"(?<=[\w)\]}'′″])[ \t]{1,9}\(([A-Za-z][A-Za-z'’ -]{2,60})\)[\s.]{0,9}$")
+_WORDS = re.compile(r"(?<=[\w)\]}'′″$])[ \t]{1,9}\(([^\W\d_](?:[^\W\d_]|['’ -]){2,60})\)[\s.]{0,9}$")
 _UPRIGHT = re.compile(
     r"(?:\s|~|\\[,;:! ]|\\q{1,2}uad){0,9}\\(?:text|textrm|textit|mathrm)\s?"
-    r"\{\s{0,9}\(([A-Za-z][A-Za-z'’ -]{2,60})\)\s{0,9}\}([\s.$]{0,9}|\s*\\[\])]\s*)$"
+    r"\{\s{0,9}\(([^\W\d_](?:[^\W\d_]|['’ -]){2,60})\)\s{0,9}\}([\s.$]{0,9}|\s*\\[\])]\s*)$"
 )
 _BEHIND_ROW = re.compile(
     r"(?:~|\\[,;: ]|\\q{1,2}uad){0,9}\\(?:text|textrm|textit|mathrm)\s?"
-    r"\{\s{0,9}\(([A-Za-z][A-Za-z'’ -]{2,60})\)\s{0,9}\}(?=[\s.,]{0,9}\\\\)"
+    r"\{\s{0,9}\(([^\W\d_](?:[^\W\d_]|['’ -]){2,60})\)\s{0,9}\}(?=[\s.,]{0,9}\\\\)"
 )
 """The same behind a row that is not the last."""
 _UNIT = re.compile(r"(?<=[\w)\]}'′″])[ \t]{1,9}\[([^\[\]]{1,40})\][\s.]{0,9}$")
 _LONGEST = 160
 """Characters of a remark that is looked for behind a formula."""
+_LONG = 9
+"""Letters of a word that is a remark by itself."""
 _NAMED = frozenset(("Newton", "Lagrange", "Hamilton", "Hooke", "Kepler", "EOM", "ODE"))
 """Words that are a remark by themselves."""
 _FORCES = frozenset((
@@ -173,7 +175,8 @@ def _says_nothing(remark: str, scope: Scope) -> bool:
     found = remark.split()
     if remark.strip() in _FORCES:
         return not any(_is_known(word, scope) for word in found)
-    return (len(found) > 1 and is_prose(found, scope)) or remark.strip() in _NAMED
+    several = len(found) > 1 or len(remark.strip()) >= _LONG  # a short word may be a product of letters
+    return (several and is_prose(found, scope)) or remark.strip() in _NAMED
 
 
 def _is_known(letters: str, scope: Scope) -> bool:

@@ -16,7 +16,7 @@ from canon.expression.text.tokens import MAX_CHARACTERS, LanguageError, tokens
 if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
 
-__all__ = ["with_primes"]
+__all__ = ["has_rate", "with_primes"]
 
 _NAME = r"[^\W\d_]\w{0,15}"
 _MAPLE = re.compile(rf"\(\s?D\s?@@\s?([1-4])\s?\)\s?\(\s?({_NAME})\s?\)(?=\s?\()")
@@ -68,7 +68,7 @@ def with_primes(text: str, scope: Scope) -> str:
     return _of_letters(text, words) if "dd" in text else text
 
 
-def _has_rate(name: str, words: Words) -> bool:
+def has_rate(name: str, words: Words) -> bool:
     """Tell whether a name, as it is typed, is that of one declared coordinate."""
     try:
         plain = tokens(name)[0].text
@@ -85,8 +85,8 @@ def _primed(found: re.Match[str], name: str, order: int) -> str:
 def _behind(found: re.Match[str], words: Words) -> str:
     """Return a letter with the dots that stood before it; those behind a coordinate are its own."""
     before, letter = found["before"] or "", found["letter"]
-    own = before and (_has_rate(before, words) or _has_rate(before[-1], words))
-    if own or (before and not _has_rate(letter, words)):
+    own = before and (has_rate(before, words) or has_rate(before[-1], words))
+    if own or (before and not has_rate(letter, words)):
         return found.group()
     return f"{before}{letter}{_ABOVE[found['dots']]}"
 
@@ -99,7 +99,7 @@ def _of_words(text: str, words: Words) -> str:
 
     def read(found: re.Match[str]) -> str:
         name = found["inside"] or found["name"]
-        if not _has_rate(name, words):
+        if not has_rate(name, words):
             return found.group()
         if not second and _FACTOR_BEFORE.search(found.string[: found.start()]):
             reason = "is dot a product here, or the rate of what follows?"
@@ -122,7 +122,7 @@ def _of_letters(text: str, words: Words) -> str:
 def _is_rate_by_letter(found: re.Match[str], words: Words) -> bool:
     if _OVER.search(found.string[max(0, found.start() - 20) : found.start()]):  # dr/dphi
         return False
-    return not words.declared(found.group()) and _has_rate(found["name"], words)
+    return not words.declared(found.group()) and has_rate(found["name"], words)
 
 
 def _of_subscripts(text: str, words: Words) -> str:
@@ -147,4 +147,4 @@ def _has_subscript(found: re.Match[str], words: Words, index: str) -> bool:
     """Tell whether a name, or the last letter of a run, is a coordinate and is not declared with that subscript."""
     run = found["name"].lstrip("\\")
     names = (run,) if found["name"].startswith("\\") else (run, run[-1])
-    return any(_has_rate(name, words) and not words.declared(f"{name}_{index}") for name in names)
+    return any(has_rate(name, words) and not words.declared(f"{name}_{index}") for name in names)

@@ -164,7 +164,7 @@ def test_conditions_and_equations():
         ("Piecewise(x)", 11, "a piece is"),
         ("(x, x)", 1, "inside Piecewise"),
         ("x < 1", 1, "comparison"),
-        ("ｘ", 1, "not a letter"),
+        ("ж", 1, "not a letter"),
         ("х", 1, "not a letter"),  # Cyrillic
         ("x\u200b", 2, "not part"),
         ("x\x00", 2, "not part"),

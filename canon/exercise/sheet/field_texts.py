@@ -7,11 +7,13 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from canon.expression.text.notation import is_latex
+from canon.expression.text.scope import split
 from canon.frozen_mapping import FrozenMapping
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from canon.expression.text.scope import Scope
     from canon.expression.text.statement import Side, Statement
 
 __all__ = [
@@ -24,7 +26,9 @@ __all__ = [
     "says_constant",
     "texts_in",
     "whole_statement",
+    "with_equality_signs",
     "without_remainder",
+    "without_terms_of_rest",
 ]
 
 MOST_ENTRIES = 100
@@ -51,15 +55,15 @@ _NAME_OF_MATRIX = re.compile(
 _NAME_OF_VECTOR = re.compile(r"[\s$]*\\(?:vec|mathbf|boldsymbol)\s*\{?\s*\\?[A-Za-z]{1,12}\s*\}?\s*=")
 _DRESS = re.compile(
     r"^\s*MatrixForm(?=\[.*\]\s*$)|//\s*MatrixForm\s*$|\\left(?![A-Za-z])|\\right(?![A-Za-z])"
-    r"|(?<=[)\]}])\s*\^\s*\{?\s*(?:T|\\top|\\intercal|\\mathsf\s*\{?T\}?)\s*\}?(?=[\s$.]*$)"
+    r"|(?<=[)\]}])\s*\^\s*\{?\s*(?:T|\\top|\\intercal|\\mathsf\s*\{?T\}?)\s*\}?(?=[\s$.]*$)|(?<=[)\]}])ᵀ(?=[\s.]*$)"
 )
 """What is around a list of components and says nothing of them."""
 _CONSTANT = re.compile(
-    r"[\s$]*(?:\\(?:text|mathrm|textrm|operatorname|mbox|rm)\s*\{?\s*)?[ck]onst(?:ante?)?\.?\s*\}?[\s$.,;]*"
+    r"[\s$]*(?:\\(?:text|mathrm|textrm|operatorname|mbox|rm)\s*\{?\s*)?(?:[cCkK]onst(?:ante?)?|costante|cte|stała|константа)\.?\s*\}?[\s$.,;]*"
 )
 
 
-def says_constant(text: str) -> bool:
+def says_constant(text: str, scope: Scope | None = None) -> bool:
     r"""Tell whether a side says no more than that it is constant.
 
     Examples
@@ -67,7 +71,8 @@ def says_constant(text: str) -> bool:
     >>> says_constant(r"$\text{const.}"), says_constant(" constant"), says_constant("c")
     (True, True, False)
     """
-    return _CONSTANT.fullmatch(text) is not None
+    found = _CONSTANT.fullmatch(text)
+    return found is not None and not (scope is not None and "cte" in text and split("cte", scope))
 
 
 def equation_between(left: Side, right: Side) -> str:
@@ -253,6 +258,38 @@ def without_remainder(text: str) -> tuple[str, str]:
         return text, ""
     blank = " " * (found.end() - found.start())
     return text[: found.start()] + blank + text[found.end() :], found.group()[1:].strip()
+
+
+_NEARLY = re.compile(r"\\(?:approx|simeq)(?![A-Za-z])|[≈≃≅]")
+
+
+def with_equality_signs(text: str) -> str:
+    """Return a text with ``=`` for ≈, every column where it was.
+
+    Examples
+    --------
+    >>> with_equality_signs("x'' ≈ -x")
+    "x'' = -x"
+    """
+    return _NEARLY.sub(lambda found: "=".ljust(len(found.group())), text)
+
+
+_AT_REST = re.compile(
+    r"\+\s*(?:\\(?:text|mathrm)\s?\{\s*)?[(\[]?(?:"
+    r"(?:other |some )?terms (?:without|independent of|free of)(?: the)? accelerations?"
+    r"|Terme ohne Beschleunigung(?:en)?|termes sans accélérations?)[)\]]?\s*\}?(?=[\s.$]*$)"
+)
+
+
+def without_terms_of_rest(text: str) -> str:
+    """Return Gibbs's function without ``+ (terms without accelerations)``, of which it says nothing.
+
+    Examples
+    --------
+    >>> without_terms_of_rest("m x''²/2 + (terms without accelerations)").strip()
+    "m x''²/2"
+    """
+    return _AT_REST.sub(lambda found: " " * len(found.group()), text)
 
 
 _PLUS_CONSTANT = re.compile(

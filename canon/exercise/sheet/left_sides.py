@@ -36,7 +36,7 @@ __all__ = [
 
 OTHER_SPELLINGS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
-        "F": ("f", "S", "W", "G", "Lambda"),
+        "F": ("f", "S", "W", "G", "Lambda", "chi", "Phi"),
         "L1": ("L_1",),
         "L2": ("L_2", "L", "L'"),
         "I": ("I", "C"),
@@ -64,6 +64,10 @@ _LETTERS = {
 """Letters that components are called by."""
 _DECORATION = re.compile("[\u0302-\u0304]|\\^?\\*$")
 """What tells a new quantity from an old one: ``H̄``, ``H̃``, ``H*``."""
+_OF_POISSON = re.compile(r"(?<=[}\]])_\{?PB\}?$")
+"""What says that a bracket is Poisson's."""
+_IN_PROGRAMS = re.compile(r"d(?P<of>[A-Za-z]\w*)_dt")
+"""A rate as programs call it."""
 _PAIRS = {"{": "}", "[": "]", "(": ")", "<": ">"}
 _DEFINITIONS: Mapping[str, str] = {
     "L": r"[TK]-[VU]",
@@ -91,6 +95,7 @@ _SEPARATED = {
     "W": re.compile(r"W_\{?\w{1,9}\}?(?:\([^()=]{1,40}\))?(?:\+W_\{?\w{1,9}\}?(?:\([^()=]{1,40}\))?){1,9}"),
 }
 """Complete integrals by their parts, ``W - E t`` and ``W_r(r) + W_φ(φ)``."""
+_SUBSCRIPTS = str.maketrans("₁₂₃₄", "1234")
 _OF_ONE_ACTION = 2
 """Names that depend on others, the energy and one action; of several actions ∂E/∂J would have to say which."""
 _OF_ANY = r"[-−+]?∂[HLFKSRVUW][_0-9]{0,3}/∂[^-−+=∂*/(){}\[\]]{1,20}|\{[^={}]{1,20},H\}"
@@ -187,8 +192,18 @@ def _by_name(place: str, number: int, name: str, keys: Mapping[str, Any], scope:
     """Return a component that is called as its variable, with the dots of a rate or by the letter of one."""
     _, rates = _COMPONENTS[place]
     letters = _by_letter(place, number, name, keys.get("q", []))
-    also = ((s, 0) for s in letters if s in scope.other_names or not scope.declares(s))
+    also = [(s, 0) for s in letters if s in scope.other_names or not scope.declares(s)]
+    if (
+        place == "p_dot"
+        and ("p" in scope.other_names or not scope.declares("p"))
+        and len(_listed(keys.get("p"))) == 1
+    ):
+        also.append(("p", 1))  # the only momentum
     return Quantity(f"{name}{chr(39) * rates}", ((name, rates), (f"{name}{'_dot' * rates}", 0), *also))
+
+
+def _listed(names: Any) -> list[Any]:
+    return names if isinstance(names, list) else [names]
 
 
 def _numbered(letter: str, number: int, name: str, alone: bool) -> list[str]:
@@ -212,6 +227,7 @@ def label_of(said: str) -> Label | None:
     (Label(name='p_r', rates=1, arguments=()), Label(name='p', rates=1, arguments=()),
      Label(name='F_2', rates=0, arguments=('q', 'P')), ('L_z', 'x'))
     """
+    said = _OF_POISSON.sub("", said)
     try:
         found = tokens(_DECORATION.sub("", said))[:-1]
     except LanguageError:
@@ -224,6 +240,8 @@ def label_of(said: str) -> Label | None:
         return Label("", 0, entries) if len(entries) == 2 else None
     if not first.atoms:
         return None
+    if not rest and (rate := _IN_PROGRAMS.fullmatch(first.text)):
+        return Label(rate["of"], first.primes + 1)
     if not rest:
         return Label(first.text, first.primes)
     if first.text.startswith("d") and [t.text for t in rest] == ["/", "dt"] and len(first.text) > 1:
@@ -312,7 +330,7 @@ def is_definition(said: str, key: str, scope: Scope) -> bool:
     >>> is_definition("T-V", "L", Scope()), is_definition("T+V", "L", Scope())
     (True, False)
     """
-    said = said.replace("−", "-")
+    said = said.replace("−", "-").translate(_SUBSCRIPTS)
     if key == "omega" and (rate := _FREQUENCY.fullmatch(said)) is not None:
         action = rate["action"]
         return not scope.declares(action) or (

@@ -15,6 +15,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from canon.exercise.sheet import field_texts
 from canon.exercise.sheet.equations.matrix_products import components_of_products
+from canon.exercise.sheet.equations.own_labels import (
+    counted_in_words,
+    is_rest,
+    without_differential,
+    without_own_label,
+)
 from canon.exercise.sheet.equations.program_lists import lists_in
 from canon.exercise.sheet.equations.sides import Sides
 from canon.exercise.sheet.equations.typed_equations import typed_equations
@@ -37,6 +43,7 @@ from canon.exercise.sheet.quantities.known_vectors import with_angular_momenta
 from canon.exercise.sheet.typed_values import signed_tables, values_under
 from canon.exercise.sheet.written_answers import WrittenAnswers
 from canon.expression.parse import LanguageError, parse_expression
+from canon.expression.symbols.symbol import Coordinate, Momentum
 from canon.expression.text.declared_names import key_of
 from canon.expression.text.vocabulary import CONSTANTS, OTHER_NAMES
 
@@ -45,7 +52,7 @@ if TYPE_CHECKING:
 
     from canon.exercise.sheet.sheet import Claim
     from canon.expression.text.scope import Scope
-    from canon.expression.text.statement import Side
+    from canon.expression.text.statement import Side, Statement
 
     _Fault = Callable[[str, LanguageError], Exception]
 
@@ -178,6 +185,8 @@ class _Plain:
     def of_text(self, key: str, value: Any) -> Any:
         """Return the one text under a key in plain form."""
         text = value[0] if isinstance(value, list) else value
+        if key == "claim" and isinstance(text, str):
+            text = without_differential(text, self.of.keys, self.scope)
         if key in _EQUATIONS:
             equations = typed_equations(key, [text], self.sides)
             return equations[0] if len(equations) == 1 else text
@@ -198,21 +207,16 @@ class _Plain:
         """Return the text of one expression without its left sides; what else it says becomes links."""
         if not isinstance(text, str):
             return text
+        text = counted_in_words(text, self.scope) if place == "dof" else text
         given, statements = self.sides.given(place), self.sides.statements(place, text)
         if len(statements) > 1:
             statements = [s for s in statements if not given.says_a_momentum(s)] or statements
         if len(statements) > 1:
-            named = [s for s in statements if self.is_asked(s.sides[0], asked) and s.sides[1:]]
-            other = next((s for s in statements if s not in named), statements[-1]).sides[0]
-            if len(named) == 1:
-                reason, remedy = (
-                    f"this is another statement beside {asked.shown}",
-                    "put it in, or leave it out",
-                )
-            else:
-                reason, remedy = f"one expression is asked for: {asked.shown}", "leave the others out"
-            raise self.sides.told(place, text, other, reason, remedy)
-        first, *others = self.without_name_of_bracket(place, next(iter(statements)).sides, asked)
+            raise self.several_said(place, text, statements, asked)
+        named = self.without_name_of_bracket(place, next(iter(statements)).sides, asked)
+        if is_rest(place, named, asked, self.scope):
+            return "0"
+        first, *others = self.without_own_label(place, self.without_rate_of_entry(named, asked))
         sides = [first, *(side for side in others if not self.is_constant(place, side))]
         if len(sides) == 1:
             return self.written_out(place, first)
@@ -239,6 +243,33 @@ class _Plain:
             return sides
         self.found.passed.append(f"{label.name} in {place} is taken for {asked.shown}, which is asked for")
         return sides[1:]
+
+    def several_said(
+        self, place: str, text: str, statements: Sequence[Statement], asked: Quantity
+    ) -> Exception:
+        """Return the error of several statements where one expression is asked for."""
+        named = [s for s in statements if self.is_asked(s.sides[0], asked) and s.sides[1:]]
+        other = next((s for s in statements if s not in named), statements[-1]).sides[0]
+        reason, remedy = f"one expression is asked for: {asked.shown}", "leave the others out"
+        if len(named) == 1:
+            reason, remedy = f"this is another statement beside {asked.shown}", "put it in, or leave it out"
+        return self.sides.told(place, text, other, reason, remedy)
+
+    def without_own_label(self, place: str, sides: Sequence[Side]) -> Sequence[Side]:
+        """Return sides without a free name before what the question has no name for, which is told."""
+        rest = without_own_label(place, sides, self.of.keys, self.scope)
+        if rest is not sides:
+            self.found.passed.append(f"{sides[0].text.strip(' $')} in {place} is taken for what is asked for")
+        return rest
+
+    def without_rate_of_entry(self, sides: Sequence[Side], asked: Quantity) -> Sequence[Side]:
+        """Return sides without ``ṗ`` before ``{p, H}``, which is what it is by Hamilton's equations."""
+        label, bracket = label_of(sides[0].said), label_of(sides[1].said) if len(sides) > 2 else None
+        if not (asked.bracket and label and bracket and label.rates == 1 and not bracket.name):
+            return sides
+        by_energy = bracket.arguments[1:] == ("H",) and key_of(label.name) == key_of(asked.bracket[0])
+        declared = isinstance(self.scope.symbol(label.name), Coordinate | Momentum)
+        return sides[1:] if by_energy and declared and self.is_asked(sides[1], asked) else sides
 
     def last_of(self, place: str, text: str, sides: list[Side], asked: Quantity) -> str:
         """Return the last side of a chain; those before it are links, or definitions that are passed over."""
@@ -325,6 +356,8 @@ class _Plain:
     def is_asked(self, side: Side, asked: Quantity) -> bool:
         """Tell whether a side is a name of what is asked; of a constant of the motion, any name that is free."""
         label = label_of(side.said)
+        if asked.shown == "K" and "angles" in self.kind.shapes and re.fullmatch("⟨H⟩|<H>", side.said):
+            return True  # the mean of H, which the averaged Hamiltonian is
         if asked.shown == "I" and label is not None and label.name and not label.rates:
             given = self.scope.declares(label.name) or isinstance(self.of.keys.get(label.name), str)
             asked = asked if given else Quantity("I", ((label.name, 0),))
@@ -363,7 +396,11 @@ class _Plain:
     def is_constant(self, place: str, side: Side) -> bool:
         """Tell whether a side only says that the others are constant."""
         of_motion = place == "I" or place.startswith("conserved")
-        return of_motion and not self.scope.declares("const") and field_texts.says_constant(side.text)
+        return (
+            of_motion
+            and not self.scope.declares("const")
+            and field_texts.says_constant(side.text, self.scope)
+        )
 
     def bracket(self, place: str, pair: Any) -> Any:
         """Return a bracket whose value is in plain form."""

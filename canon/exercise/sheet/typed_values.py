@@ -10,6 +10,7 @@ import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from canon.exercise.sheet.equations.own_labels import without_label_of_table
 from canon.exercise.sheet.field_texts import entries_of
 from canon.exercise.sheet.left_sides import Label, label_of
 from canon.exercise.sheet.quantities.calculations import calculated
@@ -190,7 +191,11 @@ def _of_angle(value: Value, asked: str) -> Value:
 def signed_tables(place: str, table: Mapping[str, Any], fault: _Fault) -> list[Mapping[str, Any]]:
     """Return the one or two tables that values with ``±`` stand for."""
     try:
-        signed = {name: both_signs(text) for name, text in table.items() if isinstance(text, str)}
+        signed = {
+            name: both_signs(without_label_of_table(name, text))
+            for name, text in table.items()
+            if isinstance(text, str)
+        }
     except LanguageError as error:
         raise fault(place, error) from None
     two = [name for name, texts in signed.items() if len(texts) == 2]
@@ -198,7 +203,8 @@ def signed_tables(place: str, table: Mapping[str, Any], fault: _Fault) -> list[M
         text = str(table[two[1]])
         told = f"is ± of {two[0]} and of {two[1]} chosen together, or each by itself?"
         raise fault(place, LanguageError(text, 1, told, "write the tables one by one"))
-    return [{**table, two[0]: text} for text in signed[two[0]]] if two else [table]
+    plain = {**table, **{name: texts[0] for name, texts in signed.items()}}
+    return [{**plain, two[0]: text} for text in signed[two[0]]] if two else [plain]
 
 
 def _refuse_doubtful_figures(text: str, *, measured: bool) -> None:

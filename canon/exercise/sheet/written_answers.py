@@ -13,6 +13,7 @@ from canon.exercise.sheet import field_texts
 from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.left_sides import components_asked, entry_asked, is_asked, label_of
 from canon.exercise.sheet.quantities.abbreviations import without_abbreviations
+from canon.exercise.sheet.quantities.rounded_values import without_rounded
 from canon.expression.parse import LanguageError
 
 if TYPE_CHECKING:
@@ -54,6 +55,11 @@ class WrittenAnswers:
         """Return what stands under a key of the answer, written out."""
         if _EXPANSIONS & self.kind.shapes.keys() and not self.sides.scope.declares("O"):
             value = self._without_remainders(key, value)
+        if key == "claim" and (_EXPANSIONS | {"equilibrium"}) & self.kind.shapes.keys():
+            value = self._with_equality_signs(value)
+        if key == "S" and "bodies" in self.kind.shapes and isinstance(value, str):
+            value = field_texts.without_terms_of_rest(value)
+        value = self._without_rounded(key, value)
         if key in _UP_TO_A_CONSTANT and isinstance(value, str):
             value = self._without_constant(key, value)
         shape = self.kind.shapes.get(key)
@@ -81,6 +87,23 @@ class WrittenAnswers:
         if remainder:
             self.sides.passed.append(f"the remainder {remainder} in {key} is passed over")
         return text
+
+    def _with_equality_signs(self, value: Any) -> Any:
+        """Return equations that are right to an order, with ``=`` for ≈."""
+        if isinstance(value, list):
+            return [self._with_equality_signs(text) for text in value]
+        return field_texts.with_equality_signs(value) if isinstance(value, str) else value
+
+    def _without_rounded(self, key: str, value: Any) -> Any:
+        """Return exact values without the rounded ones behind them, ``arccos(2/3) ≈ 48.2°``, which are told."""
+        if key in self.kind.several or self.kind.shapes.get(key) not in (Shape.TEXT, Shape.TEXTS):
+            return value
+        if isinstance(value, list):
+            return [self._without_rounded(key, text) for text in value]
+        exact, rounded = without_rounded(value, self.sides.scope) if isinstance(value, str) else (value, "")
+        if rounded:
+            self.sides.passed.append(f"{rounded} in {key} is passed over: it is the value before it, rounded")
+        return exact
 
     def _without_constant(self, key: str, text: str) -> str:
         """Return a function without ``+ C``, which is told."""

@@ -63,6 +63,8 @@ def function_name(word: str, scope: Scope) -> str:
     """
     if word in scope.functions or scope.symbol(word) is not None:
         return ""
+    if word == "cotg" and scope.declares("g"):  # cot g, or that function
+        return ""
     if word in _TWO_LETTERS and all(scope.declares(letter) for letter in word):
         return ""
     for name in (word, OTHER_NAMES.get(word, ""), _CAPITAL.get(word, "")):

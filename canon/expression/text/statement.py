@@ -57,11 +57,13 @@ _ENDS = re.compile(
 MAX_SIDES = 100
 """Most sides in one field."""
 NAME_BEFORE_SIGN = (
-    r"(?:(?:where|with)\s)?\s*\\?[^\W\d]\w{0,11}(?:_\{\w{1,9}\})?\s*(?:\^2|\^\{2\}|\*\*2|²)?\s*"
+    r"(?:(?:where|with)\s)?\s*(?:[2-9]\s?)?\\?[^\W\d]\w{0,11}(?:_\{\w{1,9}\})?\s*(?:\^2|\^\{2\}|\*\*2|²)?\s*"
 )
-"""A name before ``=``, or its square."""
+"""A name before ``=``, its square, or a few times it: ``2γ = c/m``."""
 _LONGEST_DEFINITION = 150
-_IN_BRACKETS = re.compile(rf"\s\({NAME_BEFORE_SIGN}=[^=]{{1,90}}\)[\s.]*$")
+_IN_BRACKETS = re.compile(
+    rf"\s\({NAME_BEFORE_SIGN}=[^=]{{1,90}}(?:[,;]{NAME_BEFORE_SIGN}=[^=]{{1,90}}){{0,4}}\)[\s.]*$"
+)
 
 
 def plain_statements(text: str) -> tuple[Statement, ...]:

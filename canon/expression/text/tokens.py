@@ -118,8 +118,8 @@ GREEK = {
 _ALIKE = {"−": "-", "–": "-", "·": "*", "×": "*", "⋅": "*", "∙": "*", "•": "*", "∗": "*", "÷": "/", "∕": "/",
           "⁄": "/", "≤": "<=", "≥": ">=", "≠": "!=", ":=": "="}  # fmt: skip
 _LETTERS = {**GREEK, "ℓ": "ell", "ℏ": "hbar", "ħ": "hbar", "ϵ": "epsilon", "ϱ": "rho", "ϖ": "pi", "ς": "sigma",
-            "µ": "mu", "∆": "Delta", "Ω": "Omega", "ℋ": "H", "ℒ": "L", "ı": "i", "ⅇ": "e",
-            "ⅆ": "d", "ⅈ": "I"}  # fmt: skip
+            "µ": "mu", "∆": "Delta", "Ω": "Omega", "ℋ": "H", "ℒ": "L", "ℛ": "R", "ℱ": "F", "ℰ": "E", "ℳ": "M",
+            "ı": "i", "ⅇ": "e", "ⅆ": "d", "ⅈ": "I"}  # fmt: skip
 _NOT_HERE = {
     "∫": "write the integral out, as a function of its ends",
     "∑": "write its terms one by one, with + between",

@@ -40,6 +40,14 @@ _BRACKET = re.compile(r"\s{0,3}\[([^\[\]]{0,80})\]")
 _UPRIGHT = re.compile(
     r"(?:\\[,;: ]|~|\s){0,5}\\(?:mathrm|text|textrm|unit|si)\s?\{([^{}]{0,40}(?:\{[^{}]{0,5}\}[^{}]{0,20}){0,4})\}"
 )
+_ACCELERATION = re.compile(
+    r"m(?:\s?/\s?s\s?(?:²|\^\{?2\}?|\*\*2)|(?:\s|[*·⋅]|\\,|\\cdot){1,3}s\s?(?:⁻²|\^(?:[-−]2|\{[-−]2\}|\([-−]2\))|\*\*\(?-2\)?))"
+)
+_SAID_OF_ACCELERATION = re.compile(
+    r"(?:^|[;,\n$&])\s*(?:[A-Za-z](?:_\w{1,9})?(?:''|″|′′|\u0308)|[ẍẅÿ]|\\ddot\s?\{?\s?\\?[A-Za-z]{1,9}\s?\}?(?:_\{?\w{1,9}\}?)?|\w_ddot)\s*&?=\s*[-−+]?\s*$"
+)
+"""An acceleration by itself before its value."""
+_LONGEST_BEFORE = 60
 _FACTOR = re.compile(r"\s{0,9}[^\W_]|\s{0,9}[(\[√∛∜]")
 _LETTERS = re.compile(r"[A-Za-zΩ]+")
 _REMEDY = f"SI units without prefixes can stand there: {', '.join(sorted(COHERENT))}; or leave it out"
@@ -77,23 +85,40 @@ def _units(text: str, scope: Scope) -> Iterator[Unit]:
         at = number.end()
         if latex:
             found = _UPRIGHT.match(text, at)
-            if found and _INSIDE.fullmatch(found.group(1)) and not _declares(found.group(1), scope):
+            free = found and (
+                not _declares(found.group(1), scope) or _is_acceleration(found.group(1), text, number, scope)
+            )
+            if found and free and _INSIDE.fullmatch(found.group(1)):
                 yield Unit(found.group(1).strip(), at, found.end())
         elif found := _BRACKET.match(text, at):
             if not _INSIDE.fullmatch(found.group(1)):
                 reason = f"{found.group(1)[:40]!r} is not a unit that can be passed over"
                 raise LanguageError(text, found.start(1) + 1, reason, _REMEDY)
             yield Unit(found.group(1).strip(), at, found.end())
-        elif (bare := _bare(text, at, scope)) is not None:
+        elif (bare := _bare(text, number, scope)) is not None:
             yield Unit(bare.group().strip(), at, bare.end())
 
 
-def _bare(text: str, at: int, scope: Scope) -> re.Match[str] | None:
+def _bare(text: str, number: re.Match[str], scope: Scope) -> re.Match[str] | None:
     """Return a unit without brackets: no factor stands beside it, and none of its letters could be one."""
-    bare = None if scope.implicit else _BARE.match(text, at)
-    if bare is None or _declares(bare.group(), scope) or _FACTOR.match(text, bare.end()):
+    bare = None if scope.implicit else _BARE.match(text, number.end())
+    if bare is None or _FACTOR.match(text, bare.end()):
         return None
-    return bare
+    taken = _declares(bare.group(), scope) and not _is_acceleration(bare.group(), text, number, scope)
+    return None if taken else bare
+
+
+def _is_acceleration(unit: str, text: str, number: re.Match[str], scope: Scope) -> bool:
+    """Tell whether a unit is that of the acceleration that a number is said to be, ``y'' = -9.81 m/s²``.
+
+    The mass m may be declared then, for the second is not: read as factors the answer would mean nothing.
+    """
+    known = _ACCELERATION.fullmatch(unit.strip()) is not None and not scope.declares("s")
+    return (
+        known
+        and _SAID_OF_ACCELERATION.search(text, max(0, number.start() - _LONGEST_BEFORE), number.start())
+        is not None
+    )
 
 
 def _declares(unit: str, scope: Scope) -> bool:

@@ -84,7 +84,7 @@ RELATIONS = {"<": sp.Lt, "<=": sp.Le, ">": sp.Gt, ">=": sp.Ge, "!=": sp.Ne, "=="
 OTHER_NAMES = {"ln": "log", "Log": "log", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "abs": "Abs",
                 "cotan": "cot", "max": "Max", "min": "Min", "e": "exp(1)", "E": "exp(1)", "i": "I", "j": "I",
                 "diff": "Derivative", "tg": "tan", "sen": "sin", "arcsen": "asin", "arctg": "atan", "cth": "coth",
-                "ctg": "cot",
+                "ctg": "cot", "cotg": "cot",
                 "sh": "sinh", "ch": "cosh", "th": "tanh", "arccot": "acot",
                 "arcsinh": "asinh", "arccosh": "acosh", "arctanh": "atanh", "arsinh": "asinh", "arcosh": "acosh",
                 "artanh": "atanh", "arctan2": "atan2", "fabs": "Abs", "sgn": "sign", "cosec": "csc",

@@ -169,10 +169,11 @@ def separable(reading: Reading) -> Iterator[Question]:
     H = reading.expression("H")
     if H.has(reading.time):
         reading.fault("H", f"depends on {reading.time}; take it as a coordinate: H + p_t, with its momentum")
-    if reading.words("is") not in ((SEPARABLE,), (f"not {SEPARABLE}",)):
+    said = tuple(" ".join(word.lower().strip(" .").split()) for word in reading.words("is"))
+    if said not in ((SEPARABLE,), (f"not {SEPARABLE}",)):
         reading.fault("is", f"should be {SEPARABLE} or not {SEPARABLE}")
     verdict = is_separable(Hamiltonian(H, q, p, reading.time), reading.domain, SHARE * reading.claim.budget)
-    if reading.words("is") == (SEPARABLE,):
+    if said == (SEPARABLE,):
         yield Stated(verdict)
         return
     names = ", ".join(map(str, q))

@@ -10,7 +10,9 @@ if TYPE_CHECKING:
 
 __all__ = ["without_numbers"]
 
-_BEFORE = re.compile(r"\s*(?P<label>\((?P<a>\d{1,2})\)|(?P<b>\d{1,2})[.)])(?=\s)")
+_BEFORE = re.compile(
+    r"\s*(?P<label>(?P<bold>\*\*)?(?:\((?P<a>\d{1,2})\)|(?P<b>\d{1,2})[.)])(?(bold)\*\*))(?=\s)"
+)
 _BEHIND = re.compile(r"(?<=\s)(?P<label>\((?P<a>\d{1,2})\))(?=\s*\$?\s*[.,]?\s*$)")
 _END = re.compile(r"[;\n]")
 

@@ -89,7 +89,13 @@ class Sides:
 
     def _is_own_name(self, side: Side) -> bool:
         label = label_of(side.said)
-        if label is None or not label.name or label.rates or label.arguments or says_constant(side.text):
+        if (
+            label is None
+            or not label.name
+            or label.rates
+            or label.arguments
+            or says_constant(side.text, self.scope)
+        ):
             return False
         if not self.can_read(side):
             said = repr({key: value for key, value in self.keys.items() if key not in BESIDE})

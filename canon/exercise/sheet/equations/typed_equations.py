@@ -125,7 +125,7 @@ def _chain(place: str, statement: Statement, known: Sides) -> list[str] | _Refus
 def _says_conserved(sides: Sequence[Side], known: Sides) -> bool:
     """Tell whether a chain ends with ``= const.``."""
     free = not known.scope.declares("const")
-    return len(sides) > 1 and free and field_texts.says_constant(sides[-1].text)
+    return len(sides) > 1 and free and field_texts.says_constant(sides[-1].text, known.scope)
 
 
 def _conserved(place: str, sides: Sequence[Side], known: Sides) -> list[str]:

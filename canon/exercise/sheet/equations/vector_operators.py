@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from sympy import Dummy, S, Symbol
 
@@ -18,7 +18,10 @@ from canon.expression.parse import LanguageError, parse_expression, statements_o
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from sympy import Expr
+
     from canon.expression.text.scope import Scope
+    from canon.expression.text.statement import Side
 
 __all__ = ["components_of_operator"]
 
@@ -26,7 +29,7 @@ _BY = r"\{{?\s{{0,3}}(?P<{0}>\\?[^\W\d_]\w{{0,9}}(?:_\{{\w{{1,5}}\}}|_\w)?)\s{{0
 _OPERATOR = re.compile(
     rf"\\[dt]?frac\s?\{{\s?\\partial\s?\}}\s?\{{\s?\\partial\s?{_BY.format('below')}\s?\}}"
     rf"|(?:\\partial|∂)\s?/\s?(?:\\partial|∂)\s?{_BY.format('behind')}"
-    rf"|(?:\\partial\s?|∂)_{_BY.format('lowered')}"
+    rf"|(?:\\partial\s?|∂)_{_BY.format('lowered')}|∂(?P<small>ₓ)"
 )
 _END = re.compile(r"(?:[\s)\].,;$]|\\right|\\[bB]igg?r?|\\[,;:! ])*(?:$|[-+−])")
 """What may stand behind a derivative: the end of its term, brackets among it."""
@@ -65,21 +68,27 @@ def components_of_operator(text: str, names: str | Sequence[str], scope: Scope) 
 
 def _components(text: str, variables: Sequence[Symbol], scope: Scope) -> list[str]:
     statements = statements_of(text, scope)
-    *names_of_field, said_last = statements[0].sides
-    if len(statements) > 1 or len(names_of_field) > 1:
+    first, *others = statements[0].sides
+    values = others if others and is_name_of_matrix(first.text) else [first, *others]
+    if len(statements) > 1:
         return []
-    if not all(is_name_of_matrix(side.text) for side in names_of_field):
-        return []
-    plain, basis = _with_names(said_last.text, variables, scope)
+    each = [_of_side(side, variables, scope) for side in values]
+    # of a chain whose sides differ, which one is the answer?
+    return [str(factor) for factor in each[-1]] if all(made == each[-1] for made in each) else []
+
+
+def _of_side(side: Side, variables: Sequence[Symbol], scope: Scope) -> list[Expr]:
+    """Return the components of one side; none where it is no operator."""
+    plain, basis = _with_names(side.text, variables, scope)
     if not plain:
         return []
     names = {**scope.names, **{f"Basis_{i}": e for i, e in enumerate(basis)}}
     said = parse_expression(plain, replace(scope, names=names))
-    found = [said.diff(e) for e in basis]
+    found = [cast("Expr", said.diff(e)) for e in basis]
     linear = (
         not any(factor.has(*basis) for factor in found) and said.xreplace(dict.fromkeys(basis, S.Zero)) == 0
     )
-    return [str(factor) for factor in found] if linear else []
+    return found if linear else []
 
 
 def _with_names(text: str, variables: Sequence[Symbol], scope: Scope) -> tuple[str, list[Dummy]]:
@@ -87,7 +96,8 @@ def _with_names(text: str, variables: Sequence[Symbol], scope: Scope) -> tuple[s
     basis = [Dummy(f"e_{variable}", real=True) for variable in variables]
 
     def named(found: re.Match[str]) -> str:
-        by = parse_expression(found["below"] or found["behind"] or found["lowered"], scope)
+        name = found["below"] or found["behind"] or found["lowered"] or "x"
+        by = parse_expression(name, scope)
         at = variables.index(by) if by in variables else -1
         if at < 0 or not _END.match(found.string, found.end()):
             raise LanguageError(text, found.start() + 1, "this derivative acts on something")

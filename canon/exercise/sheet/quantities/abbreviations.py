@@ -40,6 +40,8 @@ if TYPE_CHECKING:
 __all__ = ["Abbreviated", "without_abbreviations"]
 
 _SQUARED = re.compile(r"(?:\^2|\*\*2|²|\^\{2\})$")
+_TIMES = re.compile(r"(?P<times>[2-9])\*?(?P<name>[^\W\d]\w*)")
+"""A few times a name, ``2γ``."""
 _WHERE = re.compile(r"^(\s*)(?:where|with|and|mit|wobei|avec|où|donde)\b", re.IGNORECASE)
 _MOST = 8
 """Most abbreviations in one answer."""
@@ -186,7 +188,9 @@ def _definition(statement: Statement, scope: Scope, is_asked: Callable[[Label], 
     if (rate := _rate_alone(left, scope)) is not None and not _is_asked(left, is_asked):
         return _by_its_rate(rate, statement, scope)
     said = _said(left)
-    base = _SQUARED.sub("", said)
+    is_root = _SQUARED.search(said) is not None
+    few = None if is_root else _TIMES.fullmatch(said)
+    base = few["name"] if few else _SQUARED.sub("", said)
     name = _new_name(base, scope, is_asked)
     if not name:
         return None
@@ -194,8 +198,7 @@ def _definition(statement: Statement, scope: Scope, is_asked: Callable[[Label], 
         value = parse_expression(right.text, scope)
     except LanguageError:
         return None
-    is_root = base != said
-    value = sp.sqrt(value) if is_root else value
+    value = sp.sqrt(value) if is_root else value / int(few["times"] if few else 1)
     return _Definition(name, statement, value, _moves_in(value, scope), is_root)
 
 

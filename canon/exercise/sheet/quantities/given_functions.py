@@ -46,6 +46,10 @@ _TERM = re.compile(
 _SLOPE = re.compile(r"∂\s?(?P<of>[A-Z][12]?)\s?/\s?∂(?P<by>[^-−+=∂*/(){}\[\]\s]{1,20})")
 
 
+_SCRIPT = re.compile(
+    r"\\(?:mathcal|mathscr)(?:\s+(?P<a>[FHLV])(?![A-Za-z_])|\s?\{\s?(?P<b>[FHLV])\s?\}(?!_))"
+)
+"""Letters of functions in script, which in a formula of these are the functions."""
 _INTEGRAL = re.compile(r"∫|∮|\\o?int(?![a-z])|\bIntegral\b|\bintegrate\b")
 """Signs of integrals: a letter that is put in for a function would be constant under them."""
 
@@ -59,6 +63,11 @@ def key_at(place: str) -> str:
     ('p_dot', 'map')
     """
     return re.split(r"[.\[]", place)[0]
+
+
+def _plain_letter(found: re.Match[str]) -> str:
+    """Return a letter without its script, at its column and apart from a word before it."""
+    return f" {found['a'] or found['b']}".rjust(len(found.group()))
 
 
 @dataclass(frozen=True)
@@ -139,7 +148,7 @@ class GivenFunctions:
             letters = self._letters()
             known = with_place_of_body(self.keys, self.scope)
             known = with_angular_momenta(self.keys, known) if self.asked == "pairs" else known
-            plain, slopes = self._without_slopes(text, letters)
+            plain, slopes = self._without_slopes(_SCRIPT.sub(_plain_letter, text), letters)
             plain, crosses = without_cross_products(plain, self.keys, self.scope)
             put = {
                 name: (sp.Dummy(name, real=True), f) for name, f in {**letters, **slopes, **crosses}.items()

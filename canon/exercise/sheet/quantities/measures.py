@@ -45,7 +45,9 @@ _WORDS: Mapping[str, str] = {
     "meter": "m", "metre": "m", "second": "s", "sec": "s", "kilogram": "kg", "gram": "g", "newton": "N", "joule": "J",
     "watt": "W", "hertz": "Hz", "pascal": "Pa", "radian": "rad", "degree": "deg", "minute": "min", "hour": "h",
     "hr": "h", "day": "d", "kelvin": "K", "ampere": "A", "volt": "V", "coulomb": "C", "tesla": "T", "ohm": "Ω",
-    "revolution": "rev", "turn": "rev", "percent": "%", "kilometer": "km", "kilometre": "km",
+    "revolution": "rev", "turn": "rev", "percent": "%", "sekunde": "s",
+    "sekunden": "s", "seconde": "s", "segundo": "s", "secondo": "s", "secondi": "s", "metro": "m", "metri": "m",
+    "kilometer": "km", "kilometre": "km",
 }  # fmt: skip
 """Units by their names, in singular."""
 _COUNTED_IN = {"angles": ("rad", "deg", "°"), "turns": ("rev", "rpm")}
