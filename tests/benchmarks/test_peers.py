@@ -48,7 +48,7 @@ def first_of(methods):
 
 def test_heyokas_ways_find_the_same_ends():
     problem = peer_problems.Problem("Hénon–Heiles", "henon-heiles", 0, 4, 2)
-    starts = peers_ensembles.starts_of(problem, 8)
+    starts = peers_ensembles.starts_of(problem, 16)
     ends = [
         run(1e-12, starts, 1)[1]
         for name, _, run in peers_ensembles.heyoka_methods(problem)
@@ -56,7 +56,7 @@ def test_heyokas_ways_find_the_same_ends():
     ]
     _, _, ours = next(iter(peers_ensembles.canon_methods(problem)))
     for end in ends:
-        assert end.shape == (4, 2, 8)
+        assert end.shape == (4, 2, 16)
         assert abs(end - ours(200, starts, 1)[1]).max() < 1e-10
 
 

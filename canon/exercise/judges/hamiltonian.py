@@ -108,8 +108,9 @@ def constant_of_motion(reading: Reading) -> Iterator[Question]:
         yield from constants_are_continuous(there, (*rates, t), branch.domain, system_of(reading))
     yield from valued_on_motions(reading, "I")
     moved = _moved_in_any_way(reading) if restrictions else {}
+    alone = _restricted(restrictions, _any_motions(reading)) if moved else []
     trivial = (
-        tuple(Same((Part("dI/dt", *rate_along(moved, t)(I), through=b.values),), b.domain) for b in branches)
+        tuple(Same((Part("dI/dt", *rate_along(moved, t)(I), through=b.values),), b.domain) for b in alone)
         if moved
         else tuple(same_everywhere((I,), tuple(rates), b.domain, b.values) for b in branches)
     )
@@ -129,6 +130,10 @@ def _restricted(restrictions: Sequence[Expr], motions: Motions) -> list[Branch]:
     ]
 
 
+def _any_motions(reading: Reading) -> Motions:
+    return Motions(Branch({}, reading.domain), {})
+
+
 def _moved_in_any_way(reading: Reading) -> dict[Symbol, Expr]:
     """Return the rates of coordinates and velocities whatever moves them; none where no Lagrangian is given.
 
@@ -146,7 +151,7 @@ def equality(reading: Reading) -> Iterator[Question]:
 
 def _rates(reading: Reading, I: Expr) -> tuple[dict[Symbol, Expr], Motions]:
     """Return the rate of each variable, and what binds them: equations of first order have no rates that are free."""
-    free = Motions(Branch({}, reading.domain), {})
+    free = _any_motions(reading)
     if reading.has("H"):
         q, p = reading.phase_space("q", "p")
         system = Hamiltonian(reading.expression("H"), q, p, reading.time)

@@ -63,8 +63,14 @@ def rates_of_sums(
     """Return (∂H/∂p, −∂H/∂q) of H, the value of the sums, at states of shape (2n, …), in the same shape."""
     slopes = np.zeros_like(state)
     for each in sums:
+        apart = all(len(set(each.columns[k])) == each.count for k in each.moving)
         for places, values in _parts(each, t, state, time, arithmetic, slopes=True):
-            np.add.at(slopes, places, values)
+            if not apart:
+                np.add.at(slopes, places, values)
+            elif places.strides == (0,):  # the first of all these pairs
+                slopes[places[0]] += values.sum(axis=0)
+            else:
+                slopes[places] += values
     n = len(state) // 2
     return np.concatenate([slopes[n:], -slopes[:n]])
 
