@@ -247,7 +247,9 @@ def _comparison(relation: Callable[..., Any]) -> Callable[[Any, Any], Any]:
         if b is None or isinstance(b, np.ndarray | str | list | tuple):
             return NotImplemented
         if not isinstance(b, TracedNumber | TracedCondition) and not math.isfinite(b):
-            return bool(relation(sp.S.Zero, sp.sympify(b)))  # what moves is finite
+            if math.isnan(b):
+                return relation is sp.Unequality
+            return bool(relation(sp.S.Zero, sp.oo if b > 0 else -sp.oo))  # what moves is finite
         long = getattr(a, "length", 1) + getattr(b, "length", 1) > _LONG
         return _condition(relation(expression(a), expression(b), evaluate=not long), _of(a, b))
 
