@@ -117,7 +117,7 @@ def along_all_ways(
         if count > MOST_WAYS:
             raise TypeError(f"there are more than {MOST_WAYS} ways through it, by signs of what moves")
         decisions = Decisions(given, span)
-        found = _gone(call, decisions)
+        found = _along_one_way(call, decisions)
         for i in reversed(range(len(given), len(decisions.asked))):
             before = [answer for _, answer in decisions.asked[:i]]
             found = _either(decisions.asked[i][0], found, from_here([*before, False]))
@@ -129,7 +129,7 @@ def along_all_ways(
     return whole
 
 
-def _gone(call: Callable[[Decisions], list[Expr]], decisions: Decisions) -> list[Expr] | None:
+def _along_one_way(call: Callable[[Decisions], list[Expr]], decisions: Decisions) -> list[Expr] | None:
     """Return what a function returns on one way, None where that has no end."""
     try:
         return call(decisions)

@@ -16,6 +16,7 @@ from canon.mechanics.traced.traced_number import (
     expression,
     is_traced,
 )
+from canon.proof.refute.largest_minor import determinant
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -28,6 +29,9 @@ MOST_EQUATIONS, MOST_OPERATIONS = 8, 10_000
 """Linear equations that are solved as formulas, and operations in these; larger ones are of no use."""
 
 MOST_PIECES = 60
+
+_ORDINARY = {"initial": np._NoValue, "where": True}  # noqa: SLF001  # pyright: ignore[reportPrivateUsage]
+"""What NumPy's own functions hand on where nothing else is asked."""
 
 _OF_MATRICES = ("matmul", "vecdot", "matvec", "vecmat")
 
@@ -113,6 +117,8 @@ def by_ufunc(ufunc: Any, method: str, inputs: Sequence[Any], how: Mapping[str, A
     arrays = [
         np.asarray(_plain(x), dtype=object) for x in inputs[: None if method in ("__call__", "outer") else 1]
     ]
+    if any(how.get(key, ordinary) is not ordinary for key, ordinary in _ORDINARY.items()):
+        raise TypeError(f"{name} with initial= or where= of something that moves")
     kept = {key: value for key, value in how.items() if key in ("axis", "keepdims")}
     found = getattr(acting, method)(*arrays, **kept)
     if how.get("out"):
@@ -286,13 +292,10 @@ def _inverse(matrix: Any) -> Any:
 
 def _determinant(matrix: Any) -> Any:
     rows = np.asarray(_plain(matrix), dtype=object)
-    n = len(rows)
-    if n > MOST_EQUATIONS // 2:
-        raise TypeError(f"the determinant of {n} rows of something that moves")
-    if n == 1:
-        return rows[0, 0]
-    minors = (_determinant(np.delete(rows[1:], j, axis=1)) for j in range(n))
-    return sum((-1) ** j * x * minor for j, (x, minor) in enumerate(zip(rows[0], minors, strict=True)))
+    if len(rows) > MOST_EQUATIONS // 2:
+        raise TypeError(f"the determinant of {len(rows)} rows of something that moves")
+    decisions = next((x.decisions for x in rows.flat if isinstance(x, TracedNumber)), None)
+    return TracedNumber(determinant([list(map(expression, row)) for row in rows]), decisions)
 
 
 def _along_axis(function: Callable[..., Any], axis: int, array: Any, *args: Any, **how: Any) -> Any:

@@ -152,7 +152,7 @@ def read_at_start(f: Callable[[Any, Any], Any], span: tuple[float, float], y0: A
             f"at the start f(t, y) returns {returned.tolist()}, read as formulas {told}: {_READABLE}"
         )
     if sum(sp.count_ops(rate) for rate in field.components) <= _SMALL:
-        _compare_elsewhere(f, field, t0, start)
+        _compare_elsewhere(f, field, span, start)
     return field
 
 
@@ -162,12 +162,17 @@ def _over(field: VectorField, span: tuple[float, float]) -> VectorField:
     return field if rates == list(field.components) else VectorField(rates, field.x)
 
 
-def _compare_elsewhere(f: Callable[[Any, Any], Any], field: VectorField, t0: float, start: Array) -> None:
-    """Refuse formulas that are not what a function returns at other places, as where it remembers its last call."""
+def _compare_elsewhere(
+    f: Callable[[Any, Any], Any], field: VectorField, span: tuple[float, float], start: Array
+) -> None:
+    """Refuse formulas that are not what a function returns at other places, as where it remembers its last call.
+
+    The times lie within the span, beyond which what steps with the time is not written out.
+    """
     chosen = random.Random(0)
     for _ in range(_ELSEWHERE):
         there = np.array([x * chosen.uniform(0.8, 1.2) + chosen.uniform(-0.1, 0.1) for x in start])
-        t = t0 + chosen.uniform(0, 1)
+        t = chosen.uniform(*span)
         try:
             returned = _returned(f, t, there)
         except (ArithmeticError, ValueError, AssertionError):  # no place of its
