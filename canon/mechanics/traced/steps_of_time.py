@@ -73,5 +73,5 @@ def _steps(u: Expr, first: float, last: float) -> Expr:
             f"floor({u}) has {count} steps from t = {first:g} to {last:g}; {MOST_STEPS} are written out"
         )
     begun = math.floor(min(lowest, highest))
-    levels = range(begun + 1, math.floor(max(lowest, highest)) + 1)
+    levels = range(begun + 1, math.ceil(max(lowest, highest)))  # a step at the very end is beyond
     return sp.Add(begun, *(sp.Heaviside((u - k) / abs(slope)) for k in levels))

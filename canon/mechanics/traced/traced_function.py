@@ -47,6 +47,9 @@ _ELSEWHERE = 2
 """Places beside the start at which formulas are compared with what the function returns."""
 
 _ROUNDING = 1e-6
+_INSIDE = 1e-9
+"""Part of the span after which rates that step with the time are looked at first."""
+
 _SMALL = 4000
 """Operations of formulas that are compared elsewhere too."""
 
@@ -138,8 +141,9 @@ def read_at_start(f: Callable[[Any, Any], Any], span: tuple[float, float], y0: A
         raise ValueError(
             f"y0 = {y0} is one number: give the start as a list, y0 = [{y0}], and f returns as many"
         )
-    field = _over(_field(f, len(numbers), span), span)
-    t0 = span[0]
+    written = _field(f, len(numbers), span)
+    field = _over(written, span)
+    t0 = span[0] if field is written else span[0] + _INSIDE * (span[1] - span[0])  # not on a step
     start = numbers.reshape(len(numbers), -1)[:, 0]
     returned = _returned(f, t0, start)
     if not np.array_equal(returned, _returned(f, t0, start), equal_nan=True):
