@@ -117,7 +117,7 @@ def energy_error(starts: np.ndarray, states: np.ndarray) -> float:
 
 
 def heyoka_seconds(starts: np.ndarray, span: float, tolerance: float) -> tuple[float, float]:
-    """Processor time of heyoka's batch integrator with one deviation, as wide as it recommends, and its energy's error."""
+    """Processor time of heyoka's batches, as wide as it recommends, with one deviation, and its energy's error."""
     import heyoka as hy
 
     q = hy.make_vars("x", "y", "px", "py")
