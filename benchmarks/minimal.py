@@ -31,9 +31,9 @@ QUESTIONS = {
     "its Lagrange's equations": "find('spherical-pendulum').lagrangian.equations",
     "its Hamiltonian": "find('spherical-pendulum').hamiltonian.H",
     "is p_phi conserved": (
-        "__import__('canon.scene.known_truths').scene.check.conserved(s := find('spherical-pendulum'), s.integrals[0])"
+        "from canon.scene.known_truths import conserved; s = find('spherical-pendulum'); conserved(s, s.integrals[0])"
     ),
-    "its motion": "__import__('canon.scene.scene_motion').scene.motion.run(find('spherical-pendulum'), periods=10)",
+    "its motion": "from canon.scene.scene_motion import run; run(find('spherical-pendulum'), periods=10)",
 }
 RUNS = 5
 

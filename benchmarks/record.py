@@ -37,7 +37,7 @@ BENCHMARKS = {
     "constraints": "Constraints kept by RATTLE, beside a C program",
     "nonholonomic": "Constraints on velocities kept by the nonholonomic leapfrog",
     "rotations": "Rotating bodies and charges, by methods of their own",
-    "brouwer": "Energy error over 10⁸ steps: Brouwer's law",
+    "brouwer": "Energy error over 10⁹ steps: Brouwer's law",
     "headline": "A million years of planets, ten million periods of Kepler's ellipse",
     "peers": "Work at a wanted accuracy, beside other libraries",
     "peers_ensembles": "Ten thousand orbits, beside other libraries",

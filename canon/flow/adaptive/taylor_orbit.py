@@ -36,6 +36,12 @@ _MANY_STEPS, _CREEPING = 50_000, 1e-10
 
 _ONE = Fraction(1)
 
+_OF_ONE_STEP = (
+    ". Where the motion is fast in its unit of time, its derivatives of high order are beyond 1e308: take units of time "
+    "and length in which it is neither, or a method of fixed steps"
+)
+"""Said where the step from a finite state fails."""
+
 _SYSTEMS = 64
 """Systems of which it is known how to step them."""
 
@@ -291,6 +297,7 @@ class TaylorOrbit:
         own = self.integrator
         own.state[:], own.dtime = self.safe
         t, state = own.time, own.state.copy()
+        begin = t
         for _ in range(_MANY_STEPS):
             own.step(self.span)
             if not is_finite(own.state) or own.time == t:
@@ -299,7 +306,8 @@ class TaylorOrbit:
         y = (state * self.taylor_events.size).astype(np.float64)[list(rows)]
         return NonFiniteStateError(
             f"the motion can't be continued after {time_and_state(float(t), y)} ({outcome}): a collision or the edge "
-            f"of H's domain{' or of that of an event' if self.taylor_events.events else ''}; stop earlier",
+            f"of H's domain{' or of that of an event' if self.taylor_events.events else ''}; stop earlier"
+            f"{_OF_ONE_STEP if t == begin else ''}",
             float(t),
             y,
         )
