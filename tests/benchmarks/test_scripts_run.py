@@ -11,7 +11,7 @@ import pytest
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 sys.path.insert(0, str(BENCHMARKS))
 
-from measured_page import section_of
+from measured_page import section_of  # noqa: E402  (found through the line above)
 
 SHORT = {
     "operations": ["--peer", "5"],

@@ -37,8 +37,8 @@ _MANY_STEPS, _CREEPING = 50_000, 1e-10
 _ONE = Fraction(1)
 
 _OF_ONE_STEP = (
-    ". Where the motion is fast in its unit of time, its derivatives of high order are beyond 1e308: take units of time "
-    "and length in which it is neither, or a method of fixed steps"
+    ". Where the motion is fast in its unit of time, its derivatives of high order are beyond 1e308: take units of "
+    "time and length in which they are not, or a method of fixed steps"
 )
 """Said where the step from a finite state fails."""
 
