@@ -72,7 +72,7 @@ def test_gauss_methods_take_any_hamiltonian(capsys):
     arguments = ["drift", "double-pendulum", "--periods", "40", "--method", "verlet", "--method", "gauss-4"]
     assert main(arguments) == 1
     printed = capsys.readouterr().out
-    assert "verlet failed: H is not a sum T(p, t) + V(q, t)" in printed
+    assert "verlet failed: H is not separable, T(p, t) + V(q, t)" in printed
     assert "Gauss(4) failed" not in printed
 
 

@@ -71,7 +71,7 @@ def test_failures_and_what_is_pending_show_in_words_and_in_the_exit_status(tmp_p
     assert main(["study", "run", str(file), "--store", str(kept)]) == 1
     out, _ = said(capsys)
     assert "5 cases: 4 finished, 1 failed, 0 pending" in out
-    assert "failed: double-pendulum, verlet, h = 0.1: H is not a sum T(p, t) + V(q, t)" in out
+    assert "failed: double-pendulum, verlet, h = 0.1: H is not separable, T(p, t) + V(q, t)" in out
     store = Store(kept)
     later = Case(
         "kepler",

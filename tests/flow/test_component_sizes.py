@@ -115,3 +115,33 @@ def test_a_fast_light_mass_beside_a_slow_heavy_one():
     )
     found = propagate(both, (0, 20), [7e6, 1e-4, 7e6, 0.0], method="DOP853")
     assert found["y"] == pytest.approx(1e-4 * np.cos(100 * found.t), abs=1e-8)
+
+
+@pytest.mark.parametrize("unit", [2.0**-80, 2.0**-20, 1.0, 2.0**30])
+def test_from_rest_at_the_origin_in_any_unit(unit):
+    """A body under a constant force on a spring: from nothing to amplitude 1 and back, in units of the force."""
+    H = Hamiltonian(px**2 / 2 + x**2 / 2 - a * x, [x], [px])
+    found = propagate(H, (0, 50), [0, 0], parameters={a: unit}, method="DOP853", samples=100)
+    assert abs(found["x"] / unit - (1 - np.cos(found.t))).max() < 3e-11
+    moved = propagate(H, (0, 50), [2 * unit, 0], parameters={a: unit}, method="DOP853", samples=100)
+    assert found.steps < 1.2 * moved.steps
+
+
+def test_an_electron_from_rest_in_crossed_fields():
+    """Coordinates and momenta begin at zero and have sizes of 1e-6 m and 1e-24 kg m/s soon after."""
+    mass, charge, field, pull = 9.1e-31, -1.6e-19, 1.0, 1e5
+    b, e = parameters("b e", real=True)
+    H = Hamiltonian((px**2 + (py - e * b * x) ** 2) / (2 * m) - e * k * x, [x, y], [px, py])
+    turn = charge * field / mass
+    values = {m: mass, e: charge, b: field, k: pull}
+    found = propagate(H, (0, 60 / abs(turn)), [0, 0, 0, 0], parameters=values, method="DOP853", samples=60)
+    exact = pull / (field * turn) * (1 - np.cos(turn * found.t))
+    assert abs(found["x"] - exact).max() < 1e-10 * abs(exact).max()
+
+
+def test_what_rounding_leaves_of_a_force_is_no_unit():
+    """At the top of a pendulum's circle the force is what the rounding of pi leaves; momenta begin at zero."""
+    H = Hamiltonian(px**2 / 2 + a * sin(x + y) + py**2 / 2, [x, y], [px, py])
+    found = propagate(H, (0, 5), [np.pi, np.pi / 2, 0, 0], parameters={a: 1.0}, method="DOP853")
+    assert found.steps < 100
+    assert abs(found.final - found.y[:, 0]).max() < 1e-12

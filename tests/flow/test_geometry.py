@@ -272,7 +272,7 @@ def test_kepler_angular_momentum_is_kept_by_every_splitting():
 
 
 def test_a_hamiltonian_that_does_not_split_says_what_to_use():
-    with pytest.raises(ValueError, match=r"not a sum T\(p, t\) \+ V\(q, t\).*Gauss"):
+    with pytest.raises(ValueError, match=r"not separable, T\(p, t\) \+ V\(q, t\).*Gauss"):
         propagate(DOUBLE_PENDULUM, (0, 1), [1.0, 0.4, 0.1, -0.2], method=Splitting("verlet"), step=0.1)
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import sympy as sp
 
 from canon import Lagrangian, coordinates, propagate
 from canon.scene import find
@@ -33,3 +34,11 @@ def test_many_orbits_have_an_axis():
     assert dict(data.sizes) == {"t": len(motion.t), "orbit": 3}
     assert np.array_equal(data["y"], motion.y[1])
     assert len(motion.to_pandas()) == 3 * len(motion.t)
+
+
+def test_a_column_of_sympy_is_one_start():
+    body = Lagrangian(X.dot**2 / 2 - X**2 / 2, [X])
+    column = propagate(body, (0, 5), sp.Matrix([1, sp.Rational(1, 2)]), samples=10)
+    assert np.array_equal(column.y, propagate(body, (0, 5), [1, 0.5], samples=10).y)
+    several = propagate(body, (0, 5), sp.Matrix([[1, 2], [0, 0]]), samples=10)
+    assert several.y.shape == (2, 11, 2)

@@ -159,3 +159,14 @@ def test_the_lower_branch_of_lambert_w_undoes_what_is_at_most_minus_one():
     z = E * (x * exp(x) + exp(x))
     assert equal(LambertW(z, -1), x + 1, Domain((x <= -2,))).holds
     assert equal(LambertW(z, -1), x + 1, Domain((x < -1,))).fails
+
+
+def test_lamberts_w_of_logarithms_on_one_side_of_their_branch_point():
+    """m log u lies on the principal branch where u ≥ exp(−1/m): a sum with 1 does not show it."""
+    x = symbols("x", positive=True)
+    for m, beyond in ((1, x > exp(-1)), (2, x > exp(-Rational(1, 2))), (-1, x < exp(1))):
+        g = m * log(x)
+        assert equal(LambertW(g * exp(g)), g, Domain((beyond,))).holds
+        assert equal(LambertW(g * exp(g)), g + 1, Domain((beyond,))).fails
+        assert equal(LambertW(g * exp(g)), g, Domain()).fails
+    assert equal(LambertW(x * log(x)), log(x), Domain((x > exp(-1) / 2,))).fails

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.cached_property import cached_property
-from canon.flow.adaptive.component_sizes import sizes_of
+from canon.flow.adaptive.component_sizes import sizes_at_start, sizes_of
 from canon.flow.adaptive.zeros_in_step import TooFastError, Zero, zeros_in_step
 from canon.flow.kinked.next_regime import passage, signs_at_start
 from canon.flow.kinked.place import Place
@@ -106,7 +106,7 @@ class WatchedOrbit:
         if self.kinks is not None:
             self.signs = signs_at_start(self.kinks, self._place(), self.forward)
         self._sides = self._sides_at_start()
-        self._sizes = self._start = abs(self.y)
+        self._sizes, self._start = abs(self.y), None
 
     @property
     def compile_seconds(self) -> float:
@@ -118,7 +118,7 @@ class WatchedOrbit:
         integrator.max_step = self.longest(before, kept)
         message = integrator.step()
         self._sizes = np.fmax(self._sizes, abs(integrator.y))
-        integrator.atol = self.tolerances[1] * sizes_of(self.system, self._sizes, self._start)
+        integrator.atol = self._absolute()
         self.steps += 1
         if integrator.status == "failed" or not np.isfinite(integrator.y).all():
             raise _lost(before, kept[self.system.rows], message)
@@ -401,18 +401,23 @@ class WatchedOrbit:
     def _integrator(self, t: float, y: Array, end: float, first: float | None) -> Any:
         from scipy import integrate
 
-        relative, absolute = self.tolerances
         self._sizes = np.fmax(self._sizes, abs(y))
+        if self._start is None:
+            self._start = sizes_at_start(self.system, self._watch().rate.call, t, y, end - t)
         dop853: Any = integrate.DOP853  # its stub has no array of tolerances
         return dop853(
             self._watch().rate.call,
             t,
             y,
             end,
-            rtol=relative,
-            atol=absolute * sizes_of(self.system, self._sizes, self._start),
+            rtol=self.tolerances[0],
+            atol=self._absolute(),
             first_step=None if first is None else min(first, abs(end - t)) or None,
         )
+
+    def _absolute(self) -> Array:
+        assert self._start is not None
+        return self.tolerances[1] * sizes_of(self.system, self._sizes, self._start)
 
     def _place(self) -> Place:
         wide = EXTENDED if EXTENDED.available() else DOUBLE

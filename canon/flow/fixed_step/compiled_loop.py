@@ -179,7 +179,7 @@ def check_splitting(system: HamiltonEquations, method: Splitting) -> None:
     """
     if not system.separable:
         raise ValueError(
-            "H is not a sum T(p, t) + V(q, t), so it does not split into drifts and kicks; use Gauss(6), "
+            "H is not separable, T(p, t) + V(q, t), so it does not split into drifts and kicks; use Gauss(6), "
             "SemiexplicitSplitting(4) or ExtendedPhaseSpace(4, omega=…), which are symplectic for every H, or Taylor()"
         )
     if method.scheme.nystrom and not system.quadratic_kinetic:

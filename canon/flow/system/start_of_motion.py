@@ -7,6 +7,7 @@ from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from sympy import MatrixBase
 
 from canon.expression.symbols.user_input import counted, listed
 from canon.mechanics.algebra.dynamicsymbols import coordinate
@@ -28,7 +29,8 @@ _NEAR = 1e-9
 def read_by_labels(y0: Any) -> Any:
     """Return a pandas series or frame, or an xarray array, as numbers by its labels; other starts as they are.
 
-    A frame has a column or a row a variable. Where the labels are 0, 1, … the numbers stand in order.
+    A frame has a column or a row a variable. Where the labels are 0, 1, … the numbers stand in order. A column of SymPy's
+    is one state, as a list is.
 
     Raises
     ------
@@ -45,6 +47,8 @@ def read_by_labels(y0: Any) -> Any:
     """
     if np.ma.is_masked(y0):
         raise ValueError(f"numbers of the start are masked ({y0}): give them all")
+    if isinstance(y0, MatrixBase) and y0.cols == 1:
+        return list(y0)  # pyright: ignore[reportUnknownArgumentType, reportUnknownVariableType]
     if isinstance(y0, Mapping):
         return y0  # pyright: ignore[reportUnknownVariableType]
     table = y0.to_pandas() if hasattr(y0, "dims") and hasattr(y0, "to_pandas") else y0

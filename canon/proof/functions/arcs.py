@@ -145,9 +145,12 @@ def _lambert_w(n: Forms, expr: sp.Basic, z: Fraction) -> Fraction:
     """
     t = n.tower
     one, upper = t.number(1), len(expr.args) == 1
-    for g in _inverse_candidates(n, z):
-        gap = t.sum([g, one]) if upper else n.negative(t.sum([g, one]))
-        if n.sign(gap).endswith("+") and t.is_zero(n.minus(z, t.times(g, n.exponential(g)))):
+    for g, beyond in _inverse_candidates(n, z):
+        above = [t.sum([g, one]), *beyond]
+        gaps = above if upper else [n.negative(gap) for gap in above]
+        if any(n.sign(gap).endswith("+") for gap in gaps) and t.is_zero(
+            n.minus(z, t.times(g, n.exponential(g)))
+        ):
             return g
     kernel = (sp.LambertW, (n.fraction_key(t.canonical(z)), *map(str, expr.args[1:])))
     n.arguments[kernel] = z
@@ -160,19 +163,23 @@ def _lambert_w(n: Forms, expr: sp.Basic, z: Fraction) -> Fraction:
     return n.atom(kernel, known, lambda: cast("Expr", expr))
 
 
-def _inverse_candidates(n: Forms, z: Fraction) -> Iterator[Fraction]:
-    """Yield what may be W(z): the arguments of exponentials in z, and logarithms in z with simple multiples.
+def _inverse_candidates(n: Forms, z: Fraction) -> Iterator[tuple[Fraction, list[Fraction]]]:
+    """Yield what may be W(z), arguments of exponentials in z, and logarithms in z with simple multiples.
 
     Where z = g exp g every term of z has the same exponentials, so that g is the sum of their arguments in one of them.
+    Beside it stand functions that have the sign of g + 1: of m log u + 1 that is u − exp(−1/m), where m > 0.
     """
-    yield _exponent(n, z)
+    yield _exponent(n, z), []
     for k in n.tower.used(z.num):
         candidate = n.tower.generators[k]
         if candidate[0] == "exp":
-            yield n.arguments[candidate]
+            yield n.arguments[candidate], []
         elif candidate[0] == "log":
-            for multiple in SIMPLE_MULTIPLES:
-                yield n.scaled(multiple, Fraction(n.tower.monomial(k)))
+            argument, logarithm = n.arguments[candidate], Fraction(n.tower.monomial(k))
+            for m in SIMPLE_MULTIPLES:
+                edge = n.minus(argument, n.form(sp.exp(sp.Rational(-int(m.q), int(m.p)))))
+                beyond = [edge if m > 0 else n.negative(edge)] if n.sign(argument) == "+" else []
+                yield n.scaled(m, logarithm), beyond
 
 
 def _exponent(n: Forms, z: Fraction) -> Fraction:
