@@ -104,7 +104,7 @@ def test_a_method_that_does_not_fit_is_a_row_with_the_reason():
     assert "does not split into drifts and kicks" in verlet.failure
     assert taylor.drift is not None
     table = drift_table(study)
-    assert "verlet failed: H is not a sum" in table
+    assert "verlet failed: H is not separable" in table
 
 
 def test_time_transformed_methods_take_the_step_of_a_study():

@@ -29,8 +29,8 @@ _NEAR = 1e-9
 def read_by_labels(y0: Any) -> Any:
     """Return a pandas series or frame, or an xarray array, as numbers by its labels; other starts as they are.
 
-    A frame has a column or a row a variable. Where the labels are 0, 1, … the numbers stand in order. A column of SymPy's
-    is one state, as a list is.
+    A frame has a column or a row a variable. Where the labels are 0, 1, … the numbers stand in order. A column of
+    SymPy's is one state, as a list is.
 
     Raises
     ------
