@@ -5,6 +5,7 @@ import pytest
 import sympy as sp
 
 from canon import Hamiltonian, Splitting, Taylor, coordinates, propagate
+from canon.flow.run.non_finite_state import NonFiniteStateError
 
 x, y = coordinates("x y")
 OSCILLATOR = Hamiltonian(x.momentum**2 / 2 + x**2 / 2, [x], [x.momentum])
@@ -94,3 +95,14 @@ def test_a_rate_of_the_size_of_the_least_double_is_only_rounded():
     spring = Hamiltonian(x.momentum**2 / 2 + sp.Rational(3, 2) * x**2 / 2, [x], [x.momentum])
     motion = propagate(spring, (0, 1), [5e-324, 0.0], method=Splitting("verlet"), step=0.5)
     assert abs(motion.y).max() < 1e-322
+
+
+def test_series_that_leave_the_doubles_tell_of_units():
+    """Argon in SI units: r⁻¹³ is 1e124 there, and its twentieth derivative by the time a factor of 1e250 more."""
+    m, well, size = 6.63e-26, 1.65e-21, 3.4e-10
+    H = x.momentum**2 / (2 * m) + 4 * well * ((size / x) ** 12 - (size / x) ** 6)
+    atoms = Hamiltonian(H, [x], [x.momentum])
+    with pytest.raises(NonFiniteStateError, match="units of time and length"):
+        propagate(atoms, (0, 1e-11), [4e-10, 0], samples=4)
+    motion = propagate(atoms, (0, 1e-11), [4e-10, 0], method=Splitting("kahan-li-8"), step=1e-15, samples=4)
+    assert abs(motion.energy_error).max() < 1e-12
