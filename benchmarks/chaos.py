@@ -173,7 +173,7 @@ def map_of_megno(*, whole: bool) -> None:
         f"\nmap of MEGNO: Hénon–Heiles at E = 1/8, {side} × {side} orbits over {periods} periods of the linear motion"
     )
     each: dict[int, tuple[float, float]] = {}
-    for steps in (8, 12, 16):  # all in doubles, as heyoka's are
+    for steps in (8, 11, 16, 24):  # all in doubles, as heyoka's are
         how = {
             "method": Splitting("srkn-6b"),
             "step": PERIOD / steps,

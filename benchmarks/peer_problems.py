@@ -19,7 +19,7 @@ import sympy as sp
 from canon.scene import find
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Sequence
     from pathlib import Path
 
 PERIODS, INSTANTS, TURNS = 1000, 3137, 5
@@ -155,4 +155,31 @@ def tell(given: argparse.Namespace, stored: Path, lines: Callable[[], Iterator[s
         print(line, flush=True)
     if given.store:
         stored.parent.mkdir(exist_ok=True)
-        stored.write_text("\n".join(told) + "\n", encoding="utf-8")
+        before = stored.read_text(encoding="utf-8").splitlines() if given.problems and stored.exists() else []
+        stored.write_text("\n".join(exchanged(before, told)) + "\n", encoding="utf-8")
+
+
+def exchanged(before: Sequence[str], told: Sequence[str]) -> list[str]:
+    """Return what was stored with what was measured anew in its place, problem by problem.
+
+    A problem is a line and those below it that are indented; a line with none below it says where all was measured, or
+    those problems that it names.
+    """
+    if not before:
+        return [*told]
+    old, new = blocks(before), blocks(told)
+    anew = ", ".join(title for title, rows in new.items() if rows)
+    where = [line for line, rows in old.items() if not rows and not line.endswith(f": {anew}")]
+    where += [f"{line}: {anew}" for line, rows in new.items() if not rows]
+    kept = {**{title: rows for title, rows in old.items() if rows}, **{t: r for t, r in new.items() if r}}
+    return [*where, *(line for title, rows in kept.items() for line in (title, *rows))]
+
+
+def blocks(lines: Sequence[str]) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for line in lines:
+        if line.startswith(" ") and found:
+            found[[*found][-1]].append(line)
+        else:
+            found[line] = []
+    return found

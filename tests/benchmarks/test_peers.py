@@ -94,3 +94,12 @@ def test_a_row_says_who_wins(monkeypatch):
     monkeypatch.setattr(peers_losing, "timed", lambda call: (call()[0], call()))
     *_, verdict = peers_losing.compare(posed, 1.0)
     assert verdict == "    canon 2 × the cheapest other, 2 × by the whole call: canon loses"
+
+
+def test_problems_measured_anew_take_the_place_of_the_old():
+    before = ["here, June", "a", "    1", "    2", "b", "    3"]
+    once = peer_problems.exchanged(before, ["there, July", "b", "    4", "c", "    5"])
+    assert once == ["here, June", "there, July: b, c", "a", "    1", "    2", "b", "    4", "c", "    5"]
+    again = peer_problems.exchanged(once, ["there, August", "b", "    6", "c", "    7"])
+    assert again == ["here, June", "there, August: b, c", "a", "    1", "    2", "b", "    6", "c", "    7"]
+    assert peer_problems.exchanged([], before) == before
