@@ -134,6 +134,24 @@ def test_hamiltonians_and_scenes_from_python():
     assert [case.system_name for case in scenes.cases] == ["simple-pendulum", "free"]
 
 
+@pytest.mark.parametrize(
+    ("axes", "message"),
+    [
+        ({"methods": ["rk4"]}, "unknown key 'methods'; is method meant?"),
+        ({"method": "rk4", "t_span": (0, 9)}, r"unknown key 't_span'; is span \(a duration\) meant?"),
+        ({"method": "rk4", "y0": [[1.0, 0.0]]}, "unknown key 'y0'; is start meant?"),
+        ({"method": "rk4", "stride": 2}, "unknown key 'stride'; there are system, start"),
+        (
+            {"method": "rk4", "start": [1.0, 0.0]},
+            r"start = 1.0: a start is a name or a list .* \[\[1.0, 0.0\]\]",
+        ),
+    ],
+)
+def test_the_words_of_other_functions_are_told(axes, message):
+    with pytest.raises(StudyError, match=message):
+        Study.of(**{"system": "kepler", "step": 0.1, "span": 9.0} | axes)
+
+
 def test_shares_are_the_study():
     study = Study.of(system="kepler", method="rk4", step=[0.01, 0.02, 0.03, 0.04, 0.05], span=10.0)
     shares = [study.share(k, 3).cases for k in (1, 2, 3)]
