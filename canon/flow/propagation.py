@@ -109,7 +109,7 @@ def propagate(
         Fixed steps: ``"single"``, ``"double"``, ``"compensated"`` (the default: doubles, what rounding takes
         from the state being carried along so that little is lost), ``"extended"`` (64 bits, x86 only),
         ``"double-double"`` (106 bits; all functions but the inverse hyperbolic ones). Taylor: ``"double"``,
-        ``"extended"``, ``"quad"`` or decimal digits.
+        ``"extended"``, ``"quad"`` or decimal digits. What is beyond doubles stands in ``Trajectory.carried``.
     parameters
         A number for every parameter of H, by symbol or name; or, where it differs from orbit to orbit, an array
         of shape (orbits,), beside numbers for the others. A single start, shape (2n,), is then that of every orbit.

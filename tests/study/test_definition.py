@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from canon import RK4, Hamiltonian, Splitting, Taylor, coordinates, parameters
+from canon.mechanics import field_of_function
 from canon.scene import find
 from canon.study.cases.case import Case
 from canon.study.cases.study import Study, read_study
@@ -150,6 +151,16 @@ def test_hamiltonians_and_scenes_from_python():
 def test_the_words_of_other_functions_are_told(axes, message):
     with pytest.raises(StudyError, match=message):
         Study.of(**{"system": "kepler", "step": 0.1, "span": 9.0} | axes)
+
+
+def test_a_function_is_told_how_it_becomes_a_vector_field():
+    def swing(t, y):
+        return [y[1], -y[0]]
+
+    how = {"start": [[1.0, 0.0]], "method": "taylor", "span": 9.0, "observables": {"size": "y_0**2 + y_1**2"}}
+    with pytest.raises(StudyError, match=r"give canon.mechanics.field_of_function\(f, n\)"):
+        Study.of(system=swing, **how)
+    assert len(Study.of(system=field_of_function(swing, 2), **how).cases) == 1
 
 
 def test_shares_are_the_study():

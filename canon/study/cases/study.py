@@ -17,6 +17,7 @@ from canon.flow.method.method_text import method_from, method_of
 from canon.flow.system.recognised_system import recognised
 from canon.flow.system_request import is_hamiltonian
 from canon.given_file import bytes_of, tables_of
+from canon.mechanics.traced.rates_function import is_rates_function
 from canon.scene import Scene, find
 from canon.study.cases.case import Case, key_of
 from canon.study.cases.case_observables import followed, observables_from
@@ -97,8 +98,10 @@ class Study:
             Each by the name it has in a study file, in the singular where the functions that take several at once,
             ``drift_study``, ``choose`` and ``work_precision``, say ``methods``, and a duration, ``span``, where
             ``propagate`` has both ends of one, ``t_span``:
-            ``system`` (a scene or its name, a Hamiltonian, or whatever else :func:`canon.propagate` takes; with a name
-            and starts a :class:`canon.study.motion.hamiltonian_text.Formula` or
+            ``system`` (a scene or its name, a Hamiltonian, or whatever else :func:`canon.propagate` takes that a file
+            can hold: no unilateral constraints and maps, a function f(t, y) of n variables as
+            ``canon.mechanics.field_of_function(f, n)``; with a name and starts a
+            :class:`canon.study.motion.hamiltonian_text.Formula` or
             :class:`canon.study.motion.system_text.SystemText`),
             ``start``, ``method``, ``step`` or ``steps_per_period``, ``tolerance``, ``precision``: one value or a list
             of values (a state is a list in that list, ``start=[[1.0, 0.0]]``; steps are for methods of fixed step,
@@ -237,9 +240,11 @@ def _symbols(given: Any) -> Iterable[Any]:
     try:
         return recognised(given).parameters
     except TypeError:
+        if is_rates_function(given):
+            raise  # the message says how it becomes a vector field
         raise TypeError(
             f"system = {reprlib.repr(given)}: give the name of a scene or of a [system.NAME] table, a Hamiltonian, or "
-            "another system that propagate takes"
+            "another system that propagate takes, but no map"
         ) from None
 
 
