@@ -137,7 +137,7 @@ def course_with(
         )
     both = (*system.q, *system.p)
     observed = [
-        system.observable(in_own_time(f, system.t, both), f"the observable {name!r}")
+        system.observable(in_own_time(f, both, system.t), f"the observable {name!r}")
         for name, f in extra.items()
     ]
     wanted, plan, frame = sampling(ends, request.samples, request.times), None, None

@@ -41,7 +41,7 @@ def field_motion(field: VectorField, t: Symbol = time) -> FirstOrderMotion:
     check_moves_in_time(field, t)
     graph = Graph()
     given = [given_expression(f, "the vector field") for f in field.components]
-    rates = tuple(graph.from_sympy(in_own_time(f, t, field.x)) for f in given)
+    rates = tuple(graph.from_sympy(in_own_time(f, field.x, t)) for f in given)
     return FirstOrderMotion("vector field", graph, field.x, (), "x", t, rates, holds_from=from_any_start)
 
 

@@ -142,7 +142,7 @@ def vector_field_system(
     if isinstance(motion, VectorField):
         check_moves_in_time(motion, time)
         empty = VectorFieldSystem(graph, motion.x, time, numbers, ())
-        given = [in_own_time(f, time, motion.x) for f in motion.components]
+        given = [in_own_time(f, motion.x) for f in motion.components]
         rates = tuple(empty.node(f, "the vector field") for f in given)
         return VectorFieldSystem(graph, motion.x, time, numbers, rates)
     x, n = (*motion.q, *motion.p), len(motion.q)

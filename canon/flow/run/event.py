@@ -158,7 +158,7 @@ def prepared_events(system: HamiltonEquations, events: Sequence[Event]) -> tuple
 
 def _prepared(system: HamiltonEquations, event: Event) -> PreparedEvent:
     graph, state = system.graph, (*system.q, *system.p)
-    function = in_own_time(sp.sympify(event.function, strict=True), system.t, state)
+    function = in_own_time(sp.sympify(event.function, strict=True), state, system.t)
     value = system.node(function, f"the event {event}")
     if graph.is_constant(value):
         raise ValueError(f"the event {event} does not depend on the motion")

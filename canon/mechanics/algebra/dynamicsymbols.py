@@ -94,13 +94,13 @@ def needs_plain(symbols: Collection[Any], t: Symbol = time) -> bool:
     return bare != t and bare in symbols
 
 
-def in_own_time(f: Expr, t: Symbol = time, variables: Collection[Symbol] = ()) -> Expr:
+def in_own_time(f: Expr, variables: Collection[Symbol], t: Symbol = time) -> Expr:
     """Return a function with the time in place of a symbol without assumptions of its name, which is no variable.
 
     Examples
     --------
     >>> bare = Symbol("t")
-    >>> in_own_time(2 * bare) == 2 * time, in_own_time(2 * bare, time, [bare]) == 2 * bare
+    >>> in_own_time(2 * bare, []) == 2 * time, in_own_time(2 * bare, [bare]) == 2 * bare
     (True, True)
     """
     bare = Symbol(t.name)

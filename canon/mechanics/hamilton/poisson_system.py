@@ -79,7 +79,7 @@ class PoissonSystem:
         t: Symbol = time,
     ) -> None:
         object.__setattr__(self, "x", given_symbols(x, "x"))
-        object.__setattr__(self, "H", in_own_time(given_expression(H, "H"), t, self.x))
+        object.__setattr__(self, "H", in_own_time(given_expression(H, "H"), self.x, t))
         object.__setattr__(self, "structure", sp.ImmutableDenseMatrix(structure))
         object.__setattr__(self, "t", t)
         check_none_is_the_time(self.x, "PoissonSystem(H, x, structure", t)
