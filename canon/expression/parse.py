@@ -139,13 +139,14 @@ def _syntax(text: str, scope: Scope) -> syntax.Node:
     if is_latex(text):
         from canon.expression.latex.grammar import parse_latex  # only here: it loads a parser generator
 
+        text = without_siunitx(text)  # no earlier: of a quantity that is asked for, the unit is read
         return _in_place(text, without_units(text, scope), lambda blanked: parse_latex(blanked, scope))
     return _in_place(text, without_units(text, scope), lambda blanked: parse_juxtaposed(blanked, scope))
 
 
 def _without_what_is_around(text: str, scope: Scope) -> str:
     """Return a text without markup, prose and remarks around its formula, every column where it was."""
-    text = without_macros(without_siunitx(text), scope)
+    text = without_macros(text, scope)
     text = with_rates_of_programs(with_signs_between(text, scope), scope)
     written = written_from_dictation(without_program_marks(text, scope), scope)
     joined = plainly_joined(written, scope)

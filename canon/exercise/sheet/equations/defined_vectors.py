@@ -29,7 +29,8 @@ def without_defined_vectors(
     r"""Return a text without the vectors defined behind it, and where each stands before it, with its components.
 
     The letter of the place, whose components are the coordinates in their order, is made ``\vec r``. A text stays as
-    it is where a definition can't be taken apart or is not used, or gives another meaning to the letters of the place and its rates.
+    it is where a definition can't be taken apart or is not used, or gives another meaning to the letters of the place
+    and its rates.
 
     Examples
     --------
