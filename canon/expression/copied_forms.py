@@ -36,6 +36,8 @@ _RAISED_T = re.compile(
 )
 """MathType's braces around each power."""
 _TYPST = re.compile(r"(?<![\w.\\])dot(?P<two>\.double)?\(\s?(?P<name>[^\W\d_]\w{0,15})\s?\)")
+_DOLLARS = re.compile(r"\s*\$[^$∫∑∏{]{1,2000}\$[\s.]*")
+"""One formula in dollars, which is Typst's as well, with nothing in it that only LaTeX has."""
 _SMALL = dict(
     zip(
         "⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻⁽⁾ⁿⁱᵃᵇᶜᵈᵉᶠᵍʰʲᵏˡᵐᵒᵖʳˢᵗᵘᵛʷˣʸᶻᵝᵞᵟᶿᵠᵡ",
@@ -69,7 +71,11 @@ def plainly_formed(text: str, scope: Scope) -> str:
     if len(text) > MAX_CHARACTERS:
         return text
     if is_latex(text):
-        return _of_mathtype(text) if "\\" in text else text
+        if "\\" in text:
+            return _of_mathtype(text)
+        if not (_TYPST.search(text) and _DOLLARS.fullmatch(text)) or scope.declares("dot"):
+            return text
+        text = text.replace("$", " ")
     text = _RAISED.sub(lambda found: _exponent(found.group(), scope), text)
     if "dot." in text and not scope.declares("dot"):
         text = _TYPST.sub(lambda found: found["name"] + "'" * (2 if found["two"] else 1), text)

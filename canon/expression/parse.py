@@ -14,12 +14,16 @@ from sympy import Expr, Rational
 
 from canon.expression.builder import Builder
 from canon.expression.copied_forms import plainly_formed
+from canon.expression.own_macros import without_macros
 from canon.expression.physics_package import written_out
 from canon.expression.program_marks import without_program_marks
+from canon.expression.programs.prefix_forms import with_signs_between
+from canon.expression.programs.program_rates import with_rates_of_programs
 from canon.expression.prose import without_prose
 from canon.expression.remarks import without_remarks
 from canon.expression.sentences.dictation import written_from_dictation
 from canon.expression.sentences.joined_equations import plainly_joined
+from canon.expression.siunitx import without_siunitx
 from canon.expression.symbols.user_input import given_kind
 from canon.expression.text import syntax
 from canon.expression.text.juxtaposition import parse_juxtaposed
@@ -135,12 +139,15 @@ def _syntax(text: str, scope: Scope) -> syntax.Node:
     if is_latex(text):
         from canon.expression.latex.grammar import parse_latex  # only here: it loads a parser generator
 
+        text = without_siunitx(text)  # no earlier: of a quantity that is asked for, the unit is read
         return _in_place(text, without_units(text, scope), lambda blanked: parse_latex(blanked, scope))
     return _in_place(text, without_units(text, scope), lambda blanked: parse_juxtaposed(blanked, scope))
 
 
 def _without_what_is_around(text: str, scope: Scope) -> str:
     """Return a text without markup, prose and remarks around its formula, every column where it was."""
+    text = without_macros(text, scope)
+    text = with_rates_of_programs(with_signs_between(text, scope), scope)
     written = written_from_dictation(without_program_marks(text, scope), scope)
     joined = plainly_joined(written, scope)
     plain = with_primes(unmarked(joined), scope)

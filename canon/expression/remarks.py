@@ -19,7 +19,7 @@ from canon.expression.text.units import is_a_unit
 if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
 
-__all__ = ["without_remarks"]
+__all__ = ["says_nothing", "without_remarks"]
 
 _NUMBER = r"[1-9]\d{0,2}(?:\.\d{1,2})?[a-z]?"
 _ROMAN = r"i{1,3}|iv|v|I{1,3}|IV|V"
@@ -84,12 +84,12 @@ def without_remarks(text: str, scope: Scope) -> str:
     if "\\\\" in text:
         text = _BEHIND_ROW.sub(lambda found: _blanked(found, scope), text)
     tail = max(0, len(text) - _LONGEST)
-    if (remark := _WORDS.search(text, tail)) and _says_nothing(remark[1], scope):
+    if (remark := _WORDS.search(text, tail)) and says_nothing(remark[1], scope):
         return text[: remark.start()]
     if (
         (remark := _UPRIGHT.search(text, tail))
         and _is_behind(text, remark.start())
-        and _says_nothing(remark[1], scope)
+        and says_nothing(remark[1], scope)
     ):
         return text[: remark.start()] + remark[2]
     if (unit := _UNIT.search(text, tail)) and "=" in text and is_a_unit(unit[1]):
@@ -166,11 +166,11 @@ def _is_behind(text: str, start: int) -> bool:
 
 def _blanked(found: re.Match[str], scope: Scope) -> str:
     """Return blanks for a remark behind a row of a formula."""
-    nothing = _is_behind(found.string, found.start()) and _says_nothing(found[1], scope)
+    nothing = _is_behind(found.string, found.start()) and says_nothing(found[1], scope)
     return " " * len(found.group()) if nothing else found.group()
 
 
-def _says_nothing(remark: str, scope: Scope) -> bool:
+def says_nothing(remark: str, scope: Scope) -> bool:
     """Tell whether words in brackets are a remark: several of those that change nothing, or a name known for it."""
     found = remark.split()
     if remark.strip() in _FORCES:

@@ -21,6 +21,10 @@ __all__ = ["has_rate", "with_primes"]
 _NAME = r"[^\W\d_]\w{0,15}"
 _MAPLE = re.compile(rf"\(\s?D\s?@@\s?([1-4])\s?\)\s?\(\s?({_NAME})\s?\)(?=\s?\()")
 _DOT_BEFORE = re.compile(rf"(?P<before>{_NAME})?(?P<dots>[¨˙])(?P<letter>[^\W\d_])")
+_DOT_APART = re.compile(
+    rf"(?P<before>{_NAME}[ ])?(?P<dots>[¨˙])[ ](?P<letter>[^\W\d_](?:_?[0-9₀-₉]{{1,2}})?)(?![^\W²³⁴])"
+)
+"""The same with blanks on both sides, as some readers of PDF copy it."""
 _ABOVE = {"¨": "\u0308", "˙": "\u0307"}
 _WORD = re.compile(
     rf"(?<![\w\\])(?P<dots>d?dot)(?:\s?\(\s?(?P<inside>{_NAME})\s?\)|\s{{1,3}}(?P<name>{_NAME}))"
@@ -63,6 +67,7 @@ def with_primes(text: str, scope: Scope) -> str:
         text = _MAPLE.sub(lambda found: _primed(found, found[2], int(found[1])), text)
     if "¨" in text or "˙" in text:
         text = _DOT_BEFORE.sub(lambda found: _behind(found, words), text)
+        text = _of_dots_apart(text, words)
     if "dot" in text:
         text = _of_words(text, words)
     return _of_letters(text, words) if "dd" in text else text
@@ -82,13 +87,33 @@ def _primed(found: re.Match[str], name: str, order: int) -> str:
     return f"{name}{chr(39) * order}".rjust(len(found.group()))
 
 
-def _behind(found: re.Match[str], words: Words) -> str:
-    """Return a letter with the dots that stood before it; those behind a coordinate are its own."""
-    before, letter = found["before"] or "", found["letter"]
-    own = before and (has_rate(before, words) or has_rate(before[-1], words))
+def _of_dots_apart(text: str, words: Words) -> str:
+    """Return a text with the dots that stand between blanks on the letters behind them.
+
+    ``r ˙ φ`` is r φ̇ where all dots stand before coordinates, and one of them behind none: ``m ¨ r = m r ˙ φ²``.
+    """
+    found = [*_DOT_APART.finditer(text)]
+    first = any(not _is_own(each, words) for each in found)
+    all_before = len(found) == len(re.findall("[¨˙]", text)) and all(
+        has_rate(f["letter"], words) for f in found
+    )
+    return _DOT_APART.sub(lambda each: _behind(each, words, lead=first and all_before), text)
+
+
+def _is_own(found: re.Match[str], words: Words) -> bool:
+    """Tell whether dots may belong to the coordinate before them."""
+    before = (found["before"] or "").strip()
+    return bool(before) and (has_rate(before, words) or has_rate(before[-1], words))
+
+
+def _behind(found: re.Match[str], words: Words, *, lead: bool = False) -> str:
+    """Return a letter with the dots that stood before it; those behind a coordinate are its own, unless they lead."""
+    before, letter = (found["before"] or "").strip(), found["letter"]
+    own = not lead and _is_own(found, words)
     if own or (before and not has_rate(letter, words)):
         return found.group()
-    return f"{before}{letter}{_ABOVE[found['dots']]}"
+    dotted = f"{letter[0]}{_ABOVE[found['dots']]}{letter[1:]}"
+    return f"{found['before'] or ''}{dotted:>{len(found.group()) - len(found['before'] or '')}}"
 
 
 def _of_words(text: str, words: Words) -> str:

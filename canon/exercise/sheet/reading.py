@@ -27,6 +27,7 @@ from canon.expression.parse import (
     parse_equation,
     parse_expression,
 )
+from canon.expression.siunitx import without_siunitx
 from canon.expression.symbols.symbol import Rate
 from canon.expression.symbols.user_input import counted
 from canon.expression.text.units import units
@@ -178,7 +179,11 @@ class Reading:
             for key, value in self.claim.keys.items()
             if key in shapes and shapes[key] not in (Shape.NAMES, Shape.WORD)
         }
-        found = {(key, unit.text): None for key, text in texts_in(said) for unit in units(text, self.scope)}
+        found = {
+            (key, unit.text): None
+            for key, text in texts_in(said)
+            for unit in units(without_siunitx(text), self.scope)
+        }
         units_passed = (
             f"the unit {unit} in {key} is passed over: numbers are read in any one consistent system of units"
             for key, unit in found

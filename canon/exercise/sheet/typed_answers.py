@@ -21,7 +21,7 @@ from canon.exercise.sheet.equations.own_labels import (
     without_differential,
     without_own_label,
 )
-from canon.exercise.sheet.equations.program_lists import lists_in
+from canon.exercise.sheet.equations.program_lists import lists_in, rule_as_equation
 from canon.exercise.sheet.equations.sides import Sides
 from canon.exercise.sheet.equations.typed_equations import typed_equations
 from canon.exercise.sheet.equations.vector_operators import components_of_operator
@@ -45,6 +45,7 @@ from canon.exercise.sheet.written_answers import WrittenAnswers
 from canon.expression.parse import LanguageError, parse_expression
 from canon.expression.symbols.symbol import Coordinate, Momentum
 from canon.expression.text.declared_names import key_of
+from canon.expression.text.statement import Side
 from canon.expression.text.vocabulary import CONSTANTS, OTHER_NAMES
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ if TYPE_CHECKING:
 
     from canon.exercise.sheet.sheet import Claim
     from canon.expression.text.scope import Scope
-    from canon.expression.text.statement import Side, Statement
+    from canon.expression.text.statement import Statement
 
     _Fault = Callable[[str, LanguageError], Exception]
 
@@ -207,7 +208,7 @@ class _Plain:
         """Return the text of one expression without its left sides; what else it says becomes links."""
         if not isinstance(text, str):
             return text
-        text = counted_in_words(text, self.scope) if place == "dof" else text
+        text = counted_in_words(text, self.scope) if place == "dof" else self.without_rule(text, asked)
         given, statements = self.sides.given(place), self.sides.statements(place, text)
         if len(statements) > 1:
             statements = [s for s in statements if not given.says_a_momentum(s)] or statements
@@ -230,6 +231,13 @@ class _Plain:
         else:
             self.refuse_other_names(place, text, sides[0], asked)
         return self.last_of(place, text, sides, asked)
+
+    def without_rule(self, text: str, asked: Quantity) -> str:
+        """Return ``H -> …`` of Mathematica as an equation; small quantities may tend to something."""
+        if asked.bracket or "small" in self.kind.shapes or not re.search("->|[→↦]", text):
+            return text
+        text = self.listed(asked.shown, text)
+        return rule_as_equation(text, lambda name: self.is_asked(Side(name, re.sub(r"\s", "", name)), asked))
 
     def without_name_of_bracket(self, place: str, sides: Sequence[Side], asked: Quantity) -> Sequence[Side]:
         """Return sides without a name of the writer's own for the value of a bracket, ``L_z = …``, which is told."""

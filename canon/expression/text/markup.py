@@ -46,7 +46,7 @@ _PROMPT = re.compile(
 )
 """What programs and people write before a line: prompts, names of what follows, numbers and points of a list."""
 _SAID_BEHIND = re.compile(
-    r"[\s.,;]{0,9}(?:✓|✔|∎|□|■|\\(?:checkmark|qed|blacksquare)\b|\\(?:text|mathrm)\{\s*(?:q\.e\.d\.|QED)\s*\}|\bQED\b|q\.\s?e\.\s?d\.?|c\.\s?q\.\s?f\.\s?d\.?|w\.\s?z\.\s?b\.\s?w\.?|ч\.\s?т\.\s?д\.?)[\s.]*$"
+    r"[\s.,;]{0,9}(?:✓|✔|∎|□|■|\\(?:checkmark|qed|blacksquare)\b|\\(?:text|mathrm)\{\s*(?:q\.e\.d\.|QED)\s*\}|\bQED\b|q\.\s?e\.\s?d\.?|c\.\s?q\.\s?f\.\s?d\.?|w\.\s?z\.\s?b\.\s?w\.?|ч\.\s?т\.\s?д\.?|[😊🙂😀😃😄😁🎉👍💪🥳😎]{1,3}!{0,3})[\s.]*$"
 )
 """Signs behind a formula that say nothing of it."""
 _APART_ACCENT = re.compile(r"(?<=[^\W\d]) ([\u0307\u0308])")

@@ -40,6 +40,8 @@ _BRACKET = re.compile(r"\s{0,3}\[([^\[\]]{0,80})\]")
 _UPRIGHT = re.compile(
     r"(?:\\[,;: ]|~|\s){0,5}\\(?:mathrm|text|textrm|unit|si)\s?\{([^{}]{0,40}(?:\{[^{}]{0,5}\}[^{}]{0,20}){0,4})\}"
 )
+_OF_SIUNITX = re.compile(r"(?:\\[,;: ]|~|\s){0,5}\\(?:unit|si)(?![A-Za-z])")
+"""What holds nothing but units, so that no letter in it is a factor."""
 _ACCELERATION = re.compile(
     r"m(?:\s?/\s?s\s?(?:²|\^\{?2\}?|\*\*2)|(?:\s|[*·⋅]|\\,|\\cdot){1,3}s\s?(?:⁻²|\^(?:[-−]2|\{[-−]2\}|\([-−]2\))|\*\*\(?-2\)?))"
 )
@@ -86,7 +88,9 @@ def _units(text: str, scope: Scope) -> Iterator[Unit]:
         if latex:
             found = _UPRIGHT.match(text, at)
             free = found and (
-                not _declares(found.group(1), scope) or _is_acceleration(found.group(1), text, number, scope)
+                _OF_SIUNITX.match(found.group())
+                or not _declares(found.group(1), scope)
+                or _is_acceleration(found.group(1), text, number, scope)
             )
             if found and free and _INSIDE.fullmatch(found.group(1)):
                 yield Unit(found.group(1).strip(), at, found.end())

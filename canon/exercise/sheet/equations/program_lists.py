@@ -13,14 +13,16 @@ from canon.expression.text.notation import is_latex
 from canon.expression.text.tokens import MAX_CHARACTERS, LanguageError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
-__all__ = ["listed_plainly", "lists_in"]
+__all__ = ["listed_plainly", "lists_in", "rule_as_equation"]
 
 _OPEN, _CLOSE = "([{", ")]}"
 _SIGN = re.compile(r"(?<![<>!:=])={1,2}(?!=)")
 _VECTOR = re.compile(r"\s*<(?P<inside>[^<>=|]{3,2000})>[\s.;]*")
 _RULES = ("->", "→", ":")
+_RULE = re.compile(r"(?P<name>[^=<>→↦{}-]{1,40})(?P<sign>->|→|↦)(?P<value>[^=<>→↦{}]{1,4000})")
+_OF_NUMBERS = re.compile(r"[\s\d.,+\-−∞]*")
 _MOST_LAYERS = 2
 
 
@@ -53,6 +55,22 @@ def listed_plainly(text: str) -> str:
     if ";" in text and "[" in text:
         text = _with_commas(text)
     return _with_angles(text) if "<" in text else text
+
+
+def rule_as_equation(text: str, is_name: Callable[[str], bool]) -> str:
+    """Return a rule ``H -> p^2/2`` as an equation, where its left side is what is asked for; it keeps its length.
+
+    ``x → 0`` says where x tends to, and is left alone.
+
+    Examples
+    --------
+    >>> rule_as_equation("H -> p^2/2", lambda name: name.strip() == "H"), rule_as_equation("H -> 0", lambda name: True)
+    ('H =  p^2/2', 'H -> 0')
+    """
+    found = None if is_latex(text) else _RULE.fullmatch(text)
+    if found is None or _OF_NUMBERS.fullmatch(found["value"]) or not is_name(found["name"]):
+        return text
+    return f"{found['name']}{'='.ljust(len(found['sign']))}{found['value']}"
 
 
 def _with_equations(text: str) -> str:

@@ -11,6 +11,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from canon.exercise.sheet import field_texts
+from canon.exercise.sheet.equations.defined_vectors import without_defined_vectors
 from canon.exercise.sheet.equations.equation_numbers import without_numbers
 from canon.exercise.sheet.equations.matrix_products import equations_of_products
 from canon.exercise.sheet.equations.vector_equations import vector_equations
@@ -98,8 +99,9 @@ def _is_plain(statements: Sequence[Statement], known: Sides) -> bool:
 
 def _products(place: str, text: str, known: Sides) -> list[str]:
     """Return the equations of the components where the sides are sums and products of matrices."""
-    vectors = vectors_in(text, known.keys, known.scope)
-    return equations_of_products(text, known.reads(place, text), vectors) or [text]
+    bare, defined = without_defined_vectors(text, known.keys)
+    vectors = [*vectors_in(bare, known.keys, known.scope), *defined]
+    return equations_of_products(bare, known.reads(place, bare), vectors) or [text]
 
 
 def _chain(place: str, statement: Statement, known: Sides) -> list[str] | _Refused:

@@ -263,7 +263,7 @@ def _with(statement: Statement, scope: Scope) -> str | None:
         plain = _plain(side, scope)
         if plain is None and not label_of(side.said):
             return None
-        sides.append(plain or side.text.strip())
+        sides.append(plain or (side.said if "$" in side.text else side.text.strip()))  # $H = c**2 is no LaTeX
     return " = ".join(sides)
 
 

@@ -16,7 +16,7 @@ from canon.expression.parse import LanguageError, parse_expression
 from canon.expression.symbols.symbol import Coordinate, time_derivative, velocity
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from sympy import Expr
 
@@ -40,6 +40,20 @@ _ARROW = re.compile(
     r"|(?P<plain>[rvaṙ])(?P<above>[\u0307\u0308]?)\u20d7(?P<after>[\u0307\u0308]?)"
 )
 """Vectors of the place and its rates, in bold type or with an arrow."""
+_INDEX = r"_\s?(?:\{\s?[xyz]\s?\}|[xyz](?!\w))"
+_DRESSED = rf"(?:{_BOLD}|\\hat(?![A-Za-z]))\s?"
+
+
+def _dressed(letter: str) -> str:
+    """Return the pattern of a letter in bold type, with an arrow or a hat."""
+    bare = rf"(?:\{{\s?{letter}\s?\}}|{letter}(?![A-Za-z]))"
+    return rf"{_DRESSED}(?:{bare}|\{{\s?{_DRESSED}{bare}\s?\}})"
+
+
+_UNIT_VECTOR = re.compile(
+    rf"{_dressed('e')}\s?{_INDEX}|{_DRESSED}\{{\s?e\s?{_INDEX}\s?\}}|{_dressed('(?:[xyz])')}"
+)
+"""Unit vectors along the axes, ``\\vec e_x``, ``\\hat{\\mathbf x}``."""
 _GRADIENT = re.compile(
     rf"(?:{_BOLD}\s?\{{?\s?)?(?:\\nabla(?![A-Za-z])|∇)\s?\}}?\s?(?P<of>[A-Za-z]\w{{0,9}})"
     r"(?:\s?(?:\\left\s?)?\((?P<at>[\w, ]{0,20}?)(?:\\right\s?)?\))?(?![\w(^'])"
@@ -72,7 +86,18 @@ def vectors_in(text: str, keys: Mapping[str, Any], scope: Scope) -> list[tuple[i
     slopes = [
         (*place.span(), _slopes(place, q)) for place in _GRADIENT.finditer(text) if _is_slope(place, q, scope)
     ]
-    return sorted([*placed, *slopes])
+    return sorted([*placed, *slopes, *_unit_vectors(text, q, scope)])
+
+
+def _unit_vectors(text: str, q: list[str], scope: Scope) -> Iterator[tuple[int, int, tuple[str, ...]]]:
+    """Yield the unit vectors along the axes of the coordinates whose names are free."""
+    for place in _UNIT_VECTOR.finditer(text):
+        letters = re.sub(r"\\[A-Za-z]+", "", place.group())
+        axis = re.findall("[xyz]", letters)[0]
+        names = (f"e_{axis}", f"e{axis}", f"{axis}_hat", f"hat_{axis}", f"{axis}hat")
+        is_unit = "e" in letters or "\\hat" in place.group()
+        if is_unit and axis in q and not any(map(scope.declares, names)):
+            yield (*place.span(), tuple(str(int(name == axis)) for name in q))
 
 
 def _is_slope(place: re.Match[str], q: list[str], scope: Scope) -> bool:
