@@ -7,6 +7,7 @@ where the states are doubles.
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import dataclasses
 from dataclasses import dataclass
@@ -23,6 +24,8 @@ from canon.kernel.llvm.writer import Writer
 from canon.kernel.program.program import program
 
 if TYPE_CHECKING:
+    from collections.abc import Generator
+
     import numpy.typing as npt
     from sympy import Symbol
 
@@ -145,66 +148,100 @@ class CompiledPairs:
 
     @cached_property
     def _value(self) -> MachineCode:
-        return _compiled(
-            self.sums, program(self.sums.graph, [self.sums.node], self._inputs), self._number, slopes=False
-        )
+        return _value_code(self.sums, program(self.sums.graph, [self.sums.node], self._inputs), self._number)
 
     @cached_property
     def _slopes(self) -> MachineCode:
-        return _compiled(
-            self.sums, program(self.sums.graph, self.sums.slopes, self._inputs), self._number, slopes=True
-        )
+        return _slopes_code(self.sums, program(self.sums.graph, self.sums.slopes, self._inputs), self._number)
 
     @property
     def _inputs(self) -> tuple[Symbol, ...]:
         return (*self.sums.slots, self.t)
 
 
-def _compiled(sums: RepeatedTerms, term: Program, number: MachineType, *, slopes: bool) -> MachineCode:
+@dataclass(frozen=True)
+class _FirstRow:
+    """The registers that hold the first row of pairs: its number, its slots in every lane, and the time."""
+
+    i: str
+    slots: list[str]
+    time: str
+    blocks: str
+
+
+def _value_code(sums: RepeatedTerms, term: Program, number: MachineType) -> MachineCode:
+    """Compile ``add_up`` so that ``out`` gets lanes of Σ f and Σ |f|."""
+    v = Writer(number)
+    totals = [v.array(1) for _ in range(2)]
+    for k, total in enumerate(totals):
+        v.store(v.load("%out", k), total, 0)
+    with _first_rows(v, len(sums.columns)) as first, _pairs_of(v, first, term) as (_, found):
+        for total, x in zip(totals, (*found, v.operation("Abs", found)), strict=True):
+            _add(v, x, total, 0)
+    for k, total in enumerate(totals):
+        v.store(v.load(total, 0), "%out", k)
+    return _function(v)
+
+
+def _slopes_code(sums: RepeatedTerms, term: Program, number: MachineType) -> MachineCode:
+    """Compile ``add_up`` so that ``out`` gets slopes: by first rows one by one, then by second rows in blocks."""
+    v = Writer(number)
+    moving = len(sums.moving)
+    totals = [v.array(1) for _ in range(moving)]
+    of_second = v.let(f"mul i64 %count, {moving}")
+    with _first_rows(v, len(sums.columns)) as first:
+        for total in totals:
+            v.store(v.constant(_NOTHING), total, 0)
+        with _pairs_of(v, first, term) as (block, found):
+            for k, (x, y) in enumerate(zip(found[:moving], found[moving:], strict=True)):
+                _add(v, x, totals[k], 0)
+                _add(v, y, "%out", v.let(f"add i64 {of_second}, {_place(v, k, first.blocks, block)}"))
+        for k, total in enumerate(totals):
+            v.store(v.load(total, 0), "%out", _place(v, k, "%count", first.i))
+    return _function(v)
+
+
+@contextlib.contextmanager
+def _first_rows(v: Writer, width: int) -> Generator[_FirstRow]:
+    """Repeat what is written inside for each first row of a pair, from %first to %last − 1."""
+    w, lanes = v.side_by_side(1), v.number.lanes
+    blocks = w.let(f"sdiv i64 {w.let(f'add i64 %count, {lanes - 1}')}, {lanes}")
+    time = v.splat(w.load("%alone", 0))
+    with w.loop("%first", "%last") as i:
+        places = [w.let(f"add i64 {_place(v, k, '%count', i)}, 1") for k in range(width)]
+        yield _FirstRow(i, [v.splat(w.load("%alone", place)) for place in places], time, blocks)
+
+
+@contextlib.contextmanager
+def _pairs_of(v: Writer, first: _FirstRow, term: Program) -> Generator[tuple[str, list[str]]]:
+    """Repeat what is written inside for blocks of second rows, and yield the block and the term's values, 0 elsewhere.
+
+    The first of the numbers in a block are those of its rows: behind the first row are those that are larger.
+    """
+    number = v.whole(first.i)
+    with v.loop(v.let(f"sdiv i64 {first.i}, {v.number.lanes}"), first.blocks) as block:
+        of_rows, *slots = (
+            v.load("%rows", _place(v, k, first.blocks, block)) for k in range(len(first.slots) + 1)
+        )
+        is_behind = v.less(number, of_rows)
+        yield block, [_where(v, is_behind, x) for x in v.program(term, [*first.slots, *slots, first.time])]
+
+
+def _place(v: Writer, k: int, length: str, at: str) -> str:
+    """Return the index of an element in the k-th of arrays of one length."""
+    return v.let(f"add i64 {v.let(f'mul i64 {length}, {k}')}, {at}")
+
+
+def _add(v: Writer, x: str, array: str, at: str | int) -> None:
+    v.store(v.algebra("add", v.load(array, at), x), array, at)
+
+
+def _function(v: Writer) -> MachineCode:
     """Compile ``add_up(rows, alone, count, first, last, out)`` for pairs whose first row is one of first … last − 1.
 
     ``rows`` holds the numbers of the rows and then slot after slot, in blocks of lanes; ``alone`` the time and then
-    slot after slot, one by one. ``out`` gets lanes of Σ f and Σ |f|; or of slopes, for each variable of a row, by first
-    rows one by one, then by second rows in blocks.
+    slot after slot, one by one.
     """
-    v = Writer(number)
-    w = v.side_by_side(1)
-    width, moving = len(sums.columns), len(sums.moving)
-    blocks = w.let(f"sdiv i64 {w.let(f'add i64 %count, {number.lanes - 1}')}, {number.lanes}")
-    time = v.splat(w.load("%alone", 0))
-    here = [v.array(1) for _ in range(moving if slopes else 2)]
-    zero = v.constant(_NOTHING)
-
-    def place(of: int, length: str, at: str) -> str:
-        return w.let(f"add i64 {w.let(f'mul i64 {length}, {of}')}, {at}")
-
-    if not slopes:
-        for k, sum_so_far in enumerate(here):
-            v.store(v.load("%out", k), sum_so_far, 0)
-    with w.loop("%first", "%last") as i:
-        own = [v.splat(w.load("%alone", w.let(f"add i64 {place(k, '%count', i)}, 1"))) for k in range(width)]
-        number_of_own = v.whole(i)
-        if slopes:
-            for sum_so_far in here:
-                v.store(zero, sum_so_far, 0)
-        with w.loop(w.let(f"sdiv i64 {i}, {number.lanes}"), blocks) as block:
-            other = [v.load("%rows", place(k, blocks, block)) for k in range(width + 1)]
-            is_behind = v.less(number_of_own, other[0])
-            found = [_where(v, is_behind, x) for x in v.program(term, [*own, *other[1:], time])]
-            if slopes:
-                for k, x in enumerate(found[moving:]):
-                    at = w.let(f"add i64 {place(k, blocks, block)}, {w.let(f'mul i64 %count, {moving}')}")
-                    v.store(v.algebra("add", v.load("%out", at), x), "%out", at)
-            else:
-                found.append(v.operation("Abs", found))
-            for sum_so_far, x in zip(here, found, strict=False):
-                v.store(v.algebra("add", v.load(sum_so_far, 0), x), sum_so_far, 0)
-        if slopes:
-            for k, sum_so_far in enumerate(here):
-                v.store(v.load(sum_so_far, 0), "%out", place(k, "%count", i))
-    if not slopes:
-        for k, sum_so_far in enumerate(here):
-            v.store(v.load(sum_so_far, 0), "%out", k)
     parameters = "ptr noalias %rows, ptr noalias %alone, i64 %count, i64 %first, i64 %last, ptr noalias %out"
     return compiled_function(
         v, "add_up", parameters, (_POINTER, _POINTER, _INTEGER, _INTEGER, _INTEGER, _POINTER)
