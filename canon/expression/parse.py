@@ -17,6 +17,7 @@ from canon.expression.copied_forms import plainly_formed
 from canon.expression.physics_package import written_out
 from canon.expression.program_marks import without_program_marks
 from canon.expression.prose import without_prose
+from canon.expression.ranges.typed_sums import with_sums
 from canon.expression.remarks import without_remarks
 from canon.expression.sentences.closing_sentence import with_constancy
 from canon.expression.sentences.dictation import written_from_dictation
@@ -143,7 +144,7 @@ def _syntax(text: str, scope: Scope) -> syntax.Node:
 
 def _without_what_is_around(text: str, scope: Scope) -> str:
     """Return a text without markup, prose and remarks around its formula, every column where it was."""
-    written = written_from_dictation(without_program_marks(text, scope), scope)
+    written = with_sums(written_from_dictation(without_program_marks(text, scope), scope), scope)
     joined = plainly_joined(with_constancy(with_typed_dots(written, scope), scope), scope)
     plain = with_primes(unmarked(joined), scope)
     bare = without_prose(plain, scope)

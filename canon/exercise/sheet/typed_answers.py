@@ -14,6 +14,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from canon.exercise.sheet import field_texts
+from canon.exercise.sheet.equations.capitals import lowered
 from canon.exercise.sheet.equations.equation_numbers import numbers_apart
 from canon.exercise.sheet.equations.matrix_products import components_of_products
 from canon.exercise.sheet.equations.own_labels import (
@@ -28,6 +29,8 @@ from canon.exercise.sheet.equations.program_lists import lists_in
 from canon.exercise.sheet.equations.sides import Sides
 from canon.exercise.sheet.equations.told_signs import without_told_sign
 from canon.exercise.sheet.equations.typed_equations import typed_equations
+from canon.exercise.sheet.equations.typed_indices import equations_by_index
+from canon.exercise.sheet.equations.typed_matrices import equations_of_matrices
 from canon.exercise.sheet.equations.vector_operators import components_of_operator
 from canon.exercise.sheet.equations.virtual_work import forces_of_work
 from canon.exercise.sheet.kind import Shape
@@ -129,9 +132,22 @@ class _Plain:
 
     def claim(self) -> TypedAnswers:
         """Return all keys, those with texts in plain form."""
-        for key, value in self.of.keys.items():
+        keys = self.in_small_letters()
+        for key, value in keys.items():
             self.found.keys[key] = self.value(key, value)
         return self.found
+
+    def in_small_letters(self) -> Mapping[str, Any]:
+        """Return all keys, the answers without capitals that a keyboard made, which is told."""
+        answers = {key: value for key, value in self.of.keys.items() if key in self.kind.answer}
+        small = lowered([text for _, text in field_texts.texts_in(answers)], self.of.keys, self.scope)
+        if not small:
+            return self.of.keys
+        self.found.passed.append("capitals are read as the small letters of the question")
+        return {
+            key: field_texts.with_texts(value, small) if key in answers else value
+            for key, value in self.of.keys.items()
+        }
 
     def value(self, key: str, value: Any) -> Any:
         """Return what stands under a key in plain form."""
@@ -172,6 +188,8 @@ class _Plain:
         if self.has_equations(key):
             value = numbers_apart(value) if isinstance(value, str) else value
             value = [numbers_apart(value[0])] if _is_one_text(value) else value
+        if key == "claim" and self.has_equations(key) and _is_one_text(value):
+            value = [equations_of_matrices(equations_by_index(value[0], self.scope), self.scope)]
         try:
             return lists_in(value)
         except LanguageError as error:

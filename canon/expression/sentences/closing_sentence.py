@@ -51,7 +51,8 @@ _INDEPENDENT = re.compile(
 """What a reason may say of names: all other words of it must be words, and none of them may deny or restrict."""
 _CONSTANT = re.compile(
     rf"{_BEHIND},?\s(?:(?:is|are|remains?|stays?) (?:conserved|constant|a conserved quantity"
-    r"|an? (?:first )?(?:integral|constant) of (?:the )?motion)|(?:ist|bleibt) (?:erhalten|konstant|eine (?:Erhaltungsgröße|Konstante der Bewegung))"
+    r"|an? (?:first )?(?:integral|constant) of (?:the )?motion)"
+    r"|(?:ist|bleibt) (?:erhalten|konstant|eine (?:Erhaltungsgröße|Konstante der Bewegung))"
     r"|est (?:conservée?|constante?|une constante du mouvement)|se conserve|se conserva|si conserva"
     r"|es (?:constante|una constante (?:del|de) movimiento)|è (?:costante|conservat[ao])|сохраняется)[\s.]*$"
 )
