@@ -87,7 +87,7 @@ READ = [
         r"$\dot E = -c\dot x^2 \leq 0$",
         r"$\dot E = -c^2\dot x^2 \leq 0$",
     ),
-    ("dissipative", DAMPED, "energy_rate", "-c x'^2 < 0", "-k x'^2 < 0"),
+    ("dissipative", DAMPED, "energy_rate", "dE/dt = -c x'^2 < 0", "dE/dt = -k x'^2 < 0"),
     ("lie-bracket", FIELDS, "claim", "[X,Y] = -y d/dx - x d/dy", "[X,Y] = y d/dx - x d/dy"),
     (
         "transformed-hamiltonian-K",
@@ -205,6 +205,7 @@ REFUSED = [
     ("dissipative", DAMPED, "energy_rate", "dE/dt = c x'^2 <= 0"),
     ("dissipative", {**DAMPED, "parameters": {**SIGNS, "c": "real"}}, "energy_rate", "dE/dt = -c x'^2 <= 0"),
     ("dissipative", DAMPED, "energy_rate", "dE/dt <= 0"),
+    ("dissipative", DAMPED, "energy_rate", "-c x'^2 <= 0"),
     ("dissipative", DAMPED, "energy_rate", "dE/dt = -c x'^2 <= 1"),
     ("lie-bracket", FIELDS, "claim", "[X,Y] = d/dx y - d/dy x"),
     ("lie-bracket", FIELDS, "claim", "[X,Y] = -y d/dt - x d/dy"),

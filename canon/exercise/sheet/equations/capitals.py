@@ -50,7 +50,7 @@ def lowered(texts: Sequence[str], keys: Mapping[str, Any], scope: Scope) -> Mapp
         return {}
     if not any(char.islower() for text in texts for char in text):
         return _all_lowered(texts, keys, scope)
-    words = [token for each in found for token in each if token.kind == "name"]
+    words = [token for each in found for token in each if token.atoms]
     capitals = {token.text for token in words if _is_coordinate(token, words, scope)}
     capitals = {name for name in capitals if not _is_defined(name, texts)}
     if not capitals:
@@ -93,7 +93,7 @@ def _all_lowered(texts: Sequence[str], keys: Mapping[str, Any], scope: Scope) ->
     for text in texts:
         label = _LABEL.match(text)
         begin = label.end() if label else 0
-        said = [token for token in tokens(re.sub("[;:\n]", ",", text[begin:])) if token.kind == "name"]
+        said = [token for token in tokens(re.sub("[;:\n]", ",", text[begin:])) if token.atoms]
         if not all(_is_small(token.text, keys, scope) for token in said):
             return {}
         names |= {token.text for token in said}

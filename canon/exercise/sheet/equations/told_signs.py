@@ -19,6 +19,7 @@ __all__ = ["without_told_sign"]
 _TOLD = re.compile(
     r"(?P<sign><=|>=|=<|=>|<|>|≤|≥|⩽|⩾|\\(?:leq?|geq?|leqslant|geqslant|lt|gt)(?![A-Za-z]))\s{0,9}0(?=[\s.,$]*$)"
 )
+_EQUATION = re.compile(r"(?<![<>!=])=(?![=<>])")
 _BELOW = ("<", "=<", "≤", "⩽", "\\l")
 
 
@@ -36,11 +37,11 @@ def without_told_sign(text: str, scope: Scope) -> tuple[str, str]:
     >>> from canon.expression.text.scope import Scope
     >>> c, v = parameters("c", positive=True), parameters("v")
     >>> scope = Scope({"c": c, "v": v})
-    >>> without_told_sign("-c*v**2 <= 0", scope), without_told_sign("c*v", scope)
-    (('-c*v**2     ', '<= 0'), ('c*v', ''))
+    >>> without_told_sign("W = -c*v**2 <= 0", scope), without_told_sign("-c*v**2 <= 0", scope)
+    (('W = -c*v**2     ', '<= 0'), ('-c*v**2 <= 0', ''))
     """
     found = _TOLD.search(text) if len(text) <= MAX_CHARACTERS else None
-    if found is None or not text[: found.start()].strip(" $"):
+    if found is None or not _EQUATION.search(text, 0, found.start()):  # an inequality alone is no answer
         return text, ""
     rest = text[: found.start()] + " " * (found.end() - found.start()) + text[found.end() :]
     value = parse_expression(statements_of(rest, scope)[-1].sides[-1].text, scope)
