@@ -20,7 +20,9 @@ from canon.expression.program_marks import without_program_marks
 from canon.expression.programs.prefix_forms import with_signs_between
 from canon.expression.programs.program_rates import with_rates_of_programs
 from canon.expression.prose import without_prose
+from canon.expression.ranges.typed_sums import with_sums
 from canon.expression.remarks import without_remarks
+from canon.expression.sentences.closing_sentence import with_constancy
 from canon.expression.sentences.dictation import written_from_dictation
 from canon.expression.sentences.joined_equations import plainly_joined
 from canon.expression.siunitx import without_siunitx
@@ -33,6 +35,7 @@ from canon.expression.text.scope import Scope
 from canon.expression.text.statement import Statement, plain_statements
 from canon.expression.text.syntax import LanguageError
 from canon.expression.text.units import without_units
+from canon.expression.typed_dots import with_typed_dots
 from canon.expression.written_rates import with_primes
 
 if TYPE_CHECKING:
@@ -148,8 +151,8 @@ def _without_what_is_around(text: str, scope: Scope) -> str:
     """Return a text without markup, prose and remarks around its formula, every column where it was."""
     text = without_macros(text, scope)
     text = with_rates_of_programs(with_signs_between(text, scope), scope)
-    written = written_from_dictation(without_program_marks(text, scope), scope)
-    joined = plainly_joined(written, scope)
+    written = with_sums(written_from_dictation(without_program_marks(text, scope), scope), scope)
+    joined = plainly_joined(with_constancy(with_typed_dots(written, scope), scope), scope)
     plain = with_primes(unmarked(joined), scope)
     bare = without_prose(plain, scope)
     remarked = without_remarks(plain if bare == plain else unmarked(bare), scope)

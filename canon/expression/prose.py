@@ -10,11 +10,13 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from canon.expression.sentences.closing_sentence import start_of_closing
 from canon.expression.sentences.known_words import HARMLESS, LEADING
 from canon.expression.sentences.leading_sentence import end_of_sentence, start_of_sentence_behind
 from canon.expression.symbols.symbol import Coordinate
+from canon.expression.text.declared_names import Words
 from canon.expression.text.scope import split
-from canon.expression.text.tokens import MAX_CHARACTERS
+from canon.expression.text.tokens import MAX_CHARACTERS, tokens
 
 if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
@@ -45,7 +47,8 @@ _UPRIGHT = re.compile(
 _SENTENCE = re.compile(
     r"(?:[\s.,;$]|\\\]|\\q?quad(?![A-Za-z])|\\[,;: ]){1,12}(?:\\(?:text|textrm)\s?\{\s*)?(?:"
     r"for (?:all|every|any) \}?\s?\$?(?P<every>\\?\w{1,12})\$?"
-    r"|(?:where|wobei|où|donde) \}?\s?\$?(?P<symbol>\\?\w{1,12})\$? (?P<role>(?:is|denotes) [^\W\d_ ][\w ]{2,80})"
+    r"|(?:where|wobei|où|donde|onde|dove|waar|kde|gdzie|где) \}?\s?\$?(?P<symbol>\\?\w{1,12})\$? "
+    r"(?P<role>(?:is|denotes|ist|bezeichnet|est|désigne|es|è|é|jest|je) [^\W\d_ ][\w ]{2,80})"
     r"|(?P<words>(?:which|this|that|it) is [^\W\d_][^\W\d_ -]*(?:[ -][^\W\d_]+){1,12}))\s?\}?[\s.$]{0,9}$",
     re.IGNORECASE,
 )
@@ -62,6 +65,7 @@ _EQUATION = frozenset((
     "lösung", "ergebnis", "équation", "équations", "ecuación", "ecuaciones", "equazione", "equazioni", "equação",
 ))  # fmt: skip
 """What an equation is called behind it."""
+_CONSTANT = frozenset(("constant", "konstant", "constante", "costante", "stały", "stała", "konstantní"))
 
 
 def without_prose(text: str, scope: Scope) -> str:
@@ -148,14 +152,23 @@ def _lead_end(text: str, begin: int, scope: Scope) -> int:
 
 def _end(text: str, begin: int, scope: Scope) -> int:
     """Return where a sentence behind the formula begins."""
-    if (concluded := start_of_sentence_behind(text, begin)) < len(text):
+    concluded = min(start_of_sentence_behind(text, begin), start_of_closing(text, begin, scope))
+    if concluded < len(text):
         return concluded
     tail = max(begin, len(text) - _LONGEST_SENTENCE)
     found = _SENTENCE.search(text, tail)
     if found is None or not re.search(r"[\w)\]}'′″²³$]$", text[begin : found.start()]):
         return _end_before_its_name(text, begin, tail, scope)
     said = re.findall(_WORD, found["role"] or found["words"] or "all")
-    return found.start() if is_prose(said, scope) else len(text)
+    restricts = (
+        found["symbol"] and _CONSTANT & {word.lower() for word in said} and _moves(found["symbol"], scope)
+    )
+    return found.start() if is_prose(said, scope) and not restricts else len(text)
+
+
+def _moves(symbol: str, scope: Scope) -> bool:
+    """Tell whether a name stands for what changes in time: said to be constant, it is another motion."""
+    return any(scope.moves(name) for name in Words("", scope).declared(tokens(symbol.lstrip("\\"))[0].text))
 
 
 def _end_before_its_name(text: str, begin: int, tail: int, scope: Scope) -> int:

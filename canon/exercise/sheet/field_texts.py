@@ -11,7 +11,7 @@ from canon.expression.text.scope import split
 from canon.frozen_mapping import FrozenMapping
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from canon.expression.text.scope import Scope
     from canon.expression.text.statement import Side, Statement
@@ -27,6 +27,7 @@ __all__ = [
     "texts_in",
     "whole_statement",
     "with_equality_signs",
+    "with_texts",
     "without_remainder",
     "without_terms_of_rest",
 ]
@@ -309,6 +310,23 @@ def without_constant(text: str) -> tuple[str, str]:
     if found is None or not text[: found.start()].strip(" $"):
         return text, ""
     return text[: found.start()] + " " * (found.end() - found.start()) + text[found.end() :], found["name"]
+
+
+def with_texts(value: Any, others: Mapping[str, str]) -> Any:
+    """Return what stands under a key with other texts in place of some.
+
+    Examples
+    --------
+    >>> with_texts(["a", {"value": "b"}], {"b": "c"})
+    ['a', {'value': 'c'}]
+    """
+    if isinstance(value, str):
+        return others.get(value, value)
+    if isinstance(value, dict | FrozenMapping):
+        return {name: with_texts(item, others) for name, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [with_texts(item, others) for item in value]
+    return value
 
 
 def texts_in(value: Any, key: str = "") -> Iterator[tuple[str, str]]:

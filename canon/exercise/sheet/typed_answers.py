@@ -14,16 +14,23 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from canon.exercise.sheet import field_texts
+from canon.exercise.sheet.equations.capitals import lowered
+from canon.exercise.sheet.equations.equation_numbers import numbers_apart
 from canon.exercise.sheet.equations.matrix_products import components_of_products
 from canon.exercise.sheet.equations.own_labels import (
     counted_in_words,
     is_rest,
+    without_arrow,
     without_differential,
     without_own_label,
+    without_words_before,
 )
 from canon.exercise.sheet.equations.program_lists import lists_in, rule_as_equation
 from canon.exercise.sheet.equations.sides import Sides
+from canon.exercise.sheet.equations.told_signs import without_told_sign
 from canon.exercise.sheet.equations.typed_equations import typed_equations
+from canon.exercise.sheet.equations.typed_indices import equations_by_index
+from canon.exercise.sheet.equations.typed_matrices import equations_of_matrices
 from canon.exercise.sheet.equations.vector_operators import components_of_operator
 from canon.exercise.sheet.equations.virtual_work import forces_of_work
 from canon.exercise.sheet.kind import Shape
@@ -126,9 +133,22 @@ class _Plain:
 
     def claim(self) -> TypedAnswers:
         """Return all keys, those with texts in plain form."""
-        for key, value in self.of.keys.items():
+        keys = self.in_small_letters()
+        for key, value in keys.items():
             self.found.keys[key] = self.value(key, value)
         return self.found
+
+    def in_small_letters(self) -> Mapping[str, Any]:
+        """Return all keys, the answers without capitals that a keyboard made, which is told."""
+        answers = {key: value for key, value in self.of.keys.items() if key in self.kind.answer}
+        small = lowered([text for _, text in field_texts.texts_in(answers)], self.of.keys, self.scope)
+        if not small:
+            return self.of.keys
+        self.found.passed.append("capitals are read as the small letters of the question")
+        return {
+            key: field_texts.with_texts(value, small) if key in answers else value
+            for key, value in self.of.keys.items()
+        }
 
     def value(self, key: str, value: Any) -> Any:
         """Return what stands under a key in plain form."""
@@ -166,6 +186,11 @@ class _Plain:
 
     def listed(self, key: str, value: Any) -> Any:
         """Return what stands under a key with the lists of programs as people write them."""
+        if self.has_equations(key):
+            value = numbers_apart(value) if isinstance(value, str) else value
+            value = [numbers_apart(value[0])] if _is_one_text(value) else value
+        if key == "claim" and self.has_equations(key) and _is_one_text(value):
+            value = [equations_of_matrices(equations_by_index(value[0], self.scope), self.scope)]
         try:
             return lists_in(value)
         except LanguageError as error:
@@ -208,7 +233,8 @@ class _Plain:
         """Return the text of one expression without its left sides; what else it says becomes links."""
         if not isinstance(text, str):
             return text
-        text = counted_in_words(text, self.scope) if place == "dof" else self.without_rule(text, asked)
+        text = self.in_plain_words(place, text)
+        text = text if place == "dof" else self.without_rule(text, asked)
         given, statements = self.sides.given(place), self.sides.statements(place, text)
         if len(statements) > 1:
             statements = [s for s in statements if not given.says_a_momentum(s)] or statements
@@ -238,6 +264,29 @@ class _Plain:
             return text
         text = self.listed(asked.shown, text)
         return rule_as_equation(text, lambda name: self.is_asked(Side(name, re.sub(r"\s", "", name)), asked))
+
+    def in_plain_words(self, place: str, text: str) -> str:
+        """Return the text of one answer with numbers for words that count, without a sign that is told behind it."""
+        if place in ("dof", "factor") or place.endswith(".value"):
+            return counted_in_words(without_words_before(place, text, self.scope), self.scope)
+        if (variable := self.variable_mapped(place)) is not None:
+            return without_arrow(text, variable)
+        if place != "energy_rate":
+            return text
+        try:
+            text, told = without_told_sign(text, self.scope)
+        except LanguageError as error:
+            raise self.fault(place, error.at_home_in(text)) from None
+        if told:
+            self.found.passed.append(f"{told} in {place} is passed over: it follows from the rate before it")
+        return text
+
+    def variable_mapped(self, place: str) -> str | None:
+        """Return the variable whose image is asked for at a place, ``q`` of ``q ↦ p``; None elsewhere."""
+        found = re.fullmatch(r"(?:map\.)?(?P<key>[QP])\[(?P<at>\d+)\]", place)
+        names: Any = self.of.keys.get(found["key"].lower(), []) if found else []
+        names = names if isinstance(names, list) else [names]
+        return names[int(found["at"])] if found and int(found["at"]) < len(names) else None
 
     def without_name_of_bracket(self, place: str, sides: Sequence[Side], asked: Quantity) -> Sequence[Side]:
         """Return sides without a name of the writer's own for the value of a bracket, ``L_z = …``, which is told."""
@@ -473,6 +522,11 @@ class _Plain:
         if sorted(places) != list(range(len(names))):
             return list(texts)
         return [texts[places.index(j)] for j in range(len(names))]
+
+
+def _is_one_text(value: Any) -> bool:
+    """Tell whether a list holds one text."""
+    return isinstance(value, list) and len(value) == 1 and isinstance(value[0], str)
 
 
 def _tables(value: Any) -> Any:

@@ -61,6 +61,10 @@ _STRONG = frozenset((*_POWERS, *_SIGNS, "equals", "times", "over", "dot", "sine"
 _WORD = re.compile(r"[^\W_]\w*|[=,]|\S")
 _HYPHEN = re.compile(r"(?<=[^\W_])-(?=[^\W\d_]{3})")
 _RATE = re.compile(r"(?<![\w\\])(?P<name>[^\W\d_]\w{0,15})-(?P<two>double-)?dot(?!\w)")
+_IS = re.compile(r"(?P<label>\s*[^\W\d_]\w{0,5}\s?\([\w, ]{1,40}\)) (?:is|equals) (?=\w)")
+_LABEL = re.compile(r"\s*[^\W\d_]\w{0,5}\s?(?:\([\w, ]{1,40}\))?\s?=(?!=)\s*")
+_TIGHT = re.compile(r"(?P<number>[2-9])(?P<name>[^\W\d_]\w{0,9})")
+"""A number and a name in one word, ``2m``."""
 _LONGEST = 600
 
 
@@ -85,17 +89,29 @@ def written_from_dictation(text: str, scope: Scope) -> str:
         return text
     words = Words(text, scope)
     text = _with_rates(text, words) if "dot" in text else text
+    text = _with_sign_for_is(text, words)
+    label = _LABEL.match(text)
+    begin = label.end() if label and "(" in label.group() else 0
     heard = [
         word.lower() if word.lower() in _SPOKEN else word
-        for word in _WORD.findall(_HYPHEN.sub(" ", text.rstrip(" .")))
+        for word in _WORD.findall(_HYPHEN.sub(" ", text[begin:].rstrip(" .")))
     ]
     spoken = {word for word in heard if word in _SPOKEN}
-    if not spoken & _STRONG or len(spoken) < 2 or any(words.declared(word) for word in spoken):
+    alone = spoken == {"times"} and not any(word.isdigit() for word in heard)  # p times P
+    if not spoken & _STRONG or not (alone or len(spoken) > 1) or any(words.declared(word) for word in spoken):
         return text
     try:
-        return _Dictated(words).equation(heard)
+        return text[:begin] + _Dictated(words).equation(heard)
     except _HeardAsTwoError:
         return text
+
+
+def _with_sign_for_is(text: str, words: Words) -> str:
+    """Return a text with ``=`` for *is* behind a name with arguments at its beginning, ``F4(p, P) is p times P``."""
+    found = _IS.match(text)
+    if found is None or words.declared("is") or split("is", words.scope):
+        return text
+    return f"{found['label']} = {text[found.end() :]}"
 
 
 def _with_rates(text: str, words: Words) -> str:
@@ -224,6 +240,8 @@ class _Dictated:
     def name(self, heard: Sequence[str], at: int) -> tuple[str, int]:
         """Return a declared name with its dots and its power."""
         word = heard[at] if at < len(heard) else ""
+        if (tight := _TIGHT.fullmatch(word)) and len(self.words.declared(tight["name"])) == 1:
+            return self.tight(heard, at, tight)
         if not word or word in _SPOKEN or len(self.words.declared(word)) != 1:
             raise _HeardAsTwoError
         at += 1
@@ -231,6 +249,12 @@ class _Dictated:
         at += dots
         power = _POWERS.get(heard[at], "") if at < len(heard) else ""
         return f"{word}{chr(39) * dots}{f'^{power}' if power else ''}", at + bool(power)
+
+    def tight(self, heard: Sequence[str], at: int, word: re.Match[str]) -> tuple[str, int]:
+        """Return ``2m`` as one factor, which ``over 2m`` divides by; nothing may follow that raises a part of it."""
+        if heard[at + 1 : at + 2] and heard[at + 1] in (*_POWERS, "dot", "double"):
+            raise _HeardAsTwoError
+        return f"({word['number']}*{word['name']})", at + 1
 
     def function(self, heard: Sequence[str], at: int) -> tuple[str, int]:
         """Return a function of one name, or of a number times one; nothing may follow that could belong to it."""

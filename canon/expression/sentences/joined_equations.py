@@ -15,7 +15,7 @@ from canon.expression.text.declared_names import key_of
 from canon.expression.text.notation import is_latex
 from canon.expression.text.scope import split
 from canon.expression.text.statement import NAME_BEFORE_SIGN
-from canon.expression.text.tokens import MAX_CHARACTERS
+from canon.expression.text.tokens import MAX_CHARACTERS, LanguageError, tokens
 
 if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
@@ -29,8 +29,11 @@ _EQUALS = re.compile(r"(?<![<>!])=|≡")
 _ALSO = "|".join(sorted(map(re.escape, ALSO - {"&", "|"}), key=len, reverse=True))
 _SO = "|".join(sorted(SO, key=len, reverse=True))
 _WHERE = "|".join(sorted(WHERE, key=len, reverse=True))
+_EASTERN = "即|亦即|也就是|すなわち|즉"
+"""*That is* in Chinese, Japanese and Korean."""
 _JOINT = re.compile(
-    rf"(?<=\s)(?:{_ALSO}|&|(?<=\s\s)\|(?=\s\s))(?=\s)|(?<=\s)(?:{_WHERE})(?=[\s,:$])|(?<=[,;.]\s)(?:{_SO})(?=[\s,:$])"
+    rf"(?<=\s)(?:{_ALSO}|&|(?<=\s\s)\|(?=\s\s)|resp\.|bzw\.|respektive)(?=\s)|(?<=\s)(?:{_WHERE})(?=[\s,:$])"
+    rf"|(?<=[,;.]\s)(?:{_SO})(?=[\s,:$])|(?<=[,;.]\s)(?:{_EASTERN})|(?<=[,;])(?:{_EASTERN})"
 )
 _UPRIGHT = re.compile(
     rf"\\(?:text|textrm|mbox|mathrm)\s?\{{[\s~]*(?:{_ALSO}|{_WHERE})[\s~]*\}}", re.IGNORECASE
@@ -39,6 +42,9 @@ _DEFINES = re.compile(
     rf"(?P<words>(?:\s*[^\W\d_]{{2,24}}(?=[\s$])){{0,6}})(?P<name>[\s$]*[2-9]?{NAME_BEFORE_SIGN}(?:=|≡|:=|\\equiv))"
 )
 """What an abbreviation begins with, and words before its name: ``with the cyclotron frequency Ω :=``."""
+_COLON = re.compile(r"(?<=[\w)\]'′″²³]):(?=\s)")
+_DEFINED = re.compile(r"\s*(?P<name>[^\W\d_]{1,9}_?\d{0,2})(?:\^2|²|\*\*2)?\s*:?=(?P<value>[^=:,;<>]{1,60})")
+"""A name before its value."""
 _MAPLES_END = re.compile(r"(?<=[\w)\]}'′″])\s?:\s*$")
 _JOINS = re.compile(r"[\w)\]}'′″˙\u0307\u0308²³.,;:$]\s*$")
 """What may stand before a word that joins: the end of an equation."""
@@ -64,9 +70,37 @@ def plainly_joined(text: str, scope: Scope) -> str:
     text = _MAPLES_END.sub(lambda found: " " * len(found.group()), text)
     if len(text) > _LONGEST_SIDE or not _EQUALS.search(text):
         return text
-    if is_latex(text):
-        text = _UPRIGHT.sub(lambda found: _upright(found, scope), text)
-    return _with_semicolons(text, scope)
+    if not is_latex(text):
+        return _with_semicolons(_without_colon(text, scope), scope)
+    return _with_semicolons(_UPRIGHT.sub(lambda found: _upright(found, scope), text), scope)
+
+
+def _without_colon(text: str, scope: Scope) -> str:
+    """Return a text with ``;`` for the colon behind definitions of names that are used behind it.
+
+    ``z1 = θ, z2 = θ': z1' = z2`` is read; in ``k = 0: x'' = 0`` what stands before the colon is a case.
+    """
+    colons = [*_COLON.finditer(text)]
+    if len(colons) != 1 or "=" not in text[colons[0].end() :]:
+        return text
+    before, behind = text[: colons[0].start()], text[colons[0].end() :]
+    defined = [_DEFINED.fullmatch(part) for part in re.split("[,;]", before)]
+    return f"{before};{behind}" if all(each and _defines(each, behind, scope) for each in defined) else text
+
+
+def _defines(found: re.Match[str], behind: str, scope: Scope) -> bool:
+    """Tell whether a name is new, its value one of declared names, and used behind it."""
+    known = {key_of(name) for name in scope.spelled}
+    of_known = any(key_of(word) in known for word in _words(found["value"]))
+    return of_known and found["name"] in _words(behind) and not _is_name(found["name"], scope)
+
+
+def _words(text: str) -> list[str]:
+    """Return the names in a text in plain spelling; none of what has signs of another language."""
+    try:
+        return [token.text for token in tokens(re.sub("[;:\n]", ",", text)) if token.kind == "name"]
+    except LanguageError:
+        return []
 
 
 def _with_semicolons(text: str, scope: Scope) -> str:

@@ -71,7 +71,9 @@ HARMLESS = (
     accelerationen zu liefert donne teil simplifiant simplification simplified simplify vi first second third
     schwingungsgleichung harmonischer harmonischen harmonische oszillator oszillators oscillateur harmonique
     oscilador armónico oscillatore armonico osciladores гармонический осциллятор рода sho shm ricava scrive
-    lagrange-gleichung lagrange-gleichungen
+    lagrange-gleichung lagrange-gleichungen bekommt bekommen erhaltungsgröße erhaltungsgrößen conservée conservées
+    grandeur grandeurs cantidad conservada grandezza conservata conservativa grootheid behouden impulsmoment konstant
+    konstante constante constantes costante costanti cyclic zyklisch cyclique cíclica ciclica explicitly explizit
     """
     )
     | _TOGETHER
@@ -88,7 +90,7 @@ LEADING = (
     proto dostaneme dostáváme platí je jsou alltså blir är får altså derfor tehát így böylece deci rezultă obținem
     siis вид получаем получим следовательно отсюда тогда образом итак значит равна равно равен равны находим имеем
     есть что отже маємо отримуємо звідси следователно получаваме άρα επομένως συνεπώς είναι προκύπτει έχουμε
-    τελικά zu liefert donne finalement où obtiene que da cui
+    τελικά zu liefert donne finalement où obtiene que da cui erhält erhalten bekommt bekommen
     """
     )
     | _TOGETHER

@@ -19,7 +19,7 @@ from canon.expression.text.tokens import GREEK
 if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
 
-__all__ = ["end_of_sentence", "start_of_sentence_behind"]
+__all__ = ["end_of_sentence", "is_name", "start_of_sentence_behind"]
 
 _EAST = r"\u3005-\u3007\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af"
 _CYRILLIC = r"\u0400-\u04ff"
@@ -64,7 +64,7 @@ def end_of_sentence(text: str, begin: int, scope: Scope) -> int:
     [16, 0, 0]
     """
     title = _TITLE.match(text, begin)
-    if title and "=" in text[title.end() :] and not _is_name(title["said"], scope):
+    if title and "=" in text[title.end() :] and not is_name(title["said"], scope):
         return title.end()
     for pattern in (_LABEL, _OTHER_SCRIPT):
         found = pattern.match(text, begin)
@@ -105,7 +105,7 @@ def _length(word: str) -> int:
 
 def _is_word(word: str, scope: Scope) -> bool:
     """Tell whether a word is no name, no product of names, no function, and denies nothing."""
-    if _is_name(word, scope):
+    if is_name(word, scope):
         return False
     if word.lower() in HARMLESS:
         return True
@@ -114,8 +114,15 @@ def _is_word(word: str, scope: Scope) -> bool:
     )
 
 
-def _is_name(word: str, scope: Scope) -> bool:
-    """Tell whether a word is declared, a product of declared names, or a function."""
+def is_name(word: str, scope: Scope) -> bool:
+    """Tell whether a word is declared, a product of declared names, or a function.
+
+    Examples
+    --------
+    >>> from canon.expression.text.scope import Scope
+    >>> is_name("sin", Scope()), is_name("energy", Scope())
+    (True, False)
+    """
     known = word in scope.functions or scope.declares(word)
     return known or split(word, scope) != "" or function_name(word, scope) != ""
 

@@ -24,9 +24,11 @@ if TYPE_CHECKING:
 __all__ = [
     "counted_in_words",
     "is_rest",
+    "without_arrow",
     "without_differential",
     "without_label_of_table",
     "without_own_label",
+    "without_words_before",
 ]
 
 _NUMBERS: Mapping[str, str] = {
@@ -40,6 +42,16 @@ _NUMBERS: Mapping[str, str] = {
     )
     for word in words.split()
 }  # fmt: skip
+_MINUS = re.compile(r"(?:minus|negative|moins|menos|meno|минус)\s+")
+_FACTOR_IS = re.compile(
+    r"\s*(?:(?:the|der|le|il|el|o)\s)?(?:(?:common|constant|gemeinsame)\s)?(?:factor|faktor|facteur|fattore|fator|činitel"
+    r"|czynnik|множитель|коэффициент|multiplier|valence)"
+    r"(?:\s*[:=]\s*|\s(?:is|equals|ist|lautet|est|vaut|es|vale|è|é|je|jest|равен)\s+)(?=[-−\d$])",
+    re.IGNORECASE,
+)
+_ARROW = re.compile(
+    r"\s*\$?\s*(?P<name>\\?[^\W\d_]\w{0,15}(?:_\{\w{1,5}\})?)\s*(?:↦|⟼|\|->|\\(?:long)?mapsto(?![A-Za-z]))"
+)
 _DIFFERENTIAL = re.compile(
     r"\s*\$?\s*(?:\\(?:mathrm|text|operatorname)\s?\{\s?d\s?\}|\\mathrm\s?d|d)\s*f\s*=(?!=)"
 )
@@ -113,4 +125,41 @@ def counted_in_words(text: str, scope: Scope) -> str:
     ('2', 'not two')
     """
     word = text.strip(" .").lower()
-    return text if word not in _NUMBERS or scope.declares(word) else _NUMBERS[word]
+    minus = _MINUS.match(word)
+    bare = word[minus.end() :] if minus else word
+    if bare not in _NUMBERS or any(scope.declares(each) for each in (bare, *word.split())):
+        return text
+    return f"{'-' if minus else ''}{_NUMBERS[bare]}"
+
+
+def without_words_before(place: str, text: str, scope: Scope) -> str:
+    """Return a factor without the words that say that it is one, ``the factor is 6``.
+
+    Examples
+    --------
+    >>> from canon.expression.text.scope import Scope
+    >>> without_words_before("factor", "the factor is 6", Scope()).strip()
+    '6'
+    >>> without_words_before("factor", "the factor is not 6", Scope())
+    'the factor is not 6'
+    """
+    found = _FACTOR_IS.match(text) if place == "factor" else None
+    if found is None or any(scope.declares(word) for word in found.group().split()):
+        return text
+    return " " * found.end() + text[found.end() :]
+
+
+def without_arrow(text: str, variable: str) -> str:
+    """Return an image without the variable before it, ``q ↦ p``.
+
+    Examples
+    --------
+    >>> without_arrow("q ↦ p", "q"), without_arrow("q ↦ p", "x")
+    ('    p', 'q ↦ p')
+    """
+    found = _ARROW.match(text)
+    label = label_of(found["name"].lstrip("\\")) if found else None
+    if found is None or label is None or label.rates or key_of(label.name) != key_of(variable):
+        return text
+    dollar = "$" if "$" in found.group() else " "
+    return " " * (found.end() - 1) + dollar + text[found.end() :]

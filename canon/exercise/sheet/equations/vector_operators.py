@@ -30,7 +30,10 @@ _OPERATOR = re.compile(
     rf"\\[dt]?frac\s?\{{\s?\\partial\s?\}}\s?\{{\s?\\partial\s?{_BY.format('below')}\s?\}}"
     rf"|(?:\\partial|∂)\s?/\s?(?:\\partial|∂)\s?{_BY.format('behind')}"
     rf"|(?:\\partial\s?|∂)_{_BY.format('lowered')}|∂(?P<small>ₓ)"
+    rf"|(?<![^\W_])d\s?/\s?d(?P<typed>[^\W\d_]\w{{0,9}})(?!\w)"
 )
+_TYPED = re.compile(r"(?<![^\W_])d\s?/\s?d[^\W\d_]")
+"""``d/dx``, where ∂ is not at hand."""
 _END = re.compile(r"(?:[\s)\].,;$]|\\right|\\[bB]igg?r?|\\[,;:! ])*(?:$|[-+−])")
 """What may stand behind a derivative: the end of its term, brackets among it."""
 
@@ -57,7 +60,7 @@ def components_of_operator(text: str, names: str | Sequence[str], scope: Scope) 
     >>> components_of_operator("∂_x x", ["x", "y"], scope)
     []
     """
-    if "∂" not in text and "\\partial" not in text:
+    if "∂" not in text and "\\partial" not in text and (scope.declares("d") or not _TYPED.search(text)):
         return []
     variables = [scope.names[name] for name in as_list(names) if name in scope.names]
     try:
@@ -96,9 +99,9 @@ def _with_names(text: str, variables: Sequence[Symbol], scope: Scope) -> tuple[s
     basis = [Dummy(f"e_{variable}", real=True) for variable in variables]
 
     def named(found: re.Match[str]) -> str:
-        name = found["below"] or found["behind"] or found["lowered"] or "x"
+        name = found["below"] or found["behind"] or found["lowered"] or found["typed"] or "x"
         by = parse_expression(name, scope)
-        at = variables.index(by) if by in variables else -1
+        at = variables.index(by) if by in variables and not (found["typed"] and scope.declares("d")) else -1
         if at < 0 or not _END.match(found.string, found.end()):
             raise LanguageError(text, found.start() + 1, "this derivative acts on something")
         return f" Basis_{at} "
