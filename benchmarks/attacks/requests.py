@@ -10,13 +10,12 @@ import signal
 import socket
 import subprocess
 import sys
-import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 
 from .count import Count
-from .service import _family, _port
+from .service import _family, _port, still_running
 
 CLAIM = json.dumps({"id": "a", "kind": "equality-only", "lhs": "1", "rhs": "1"}).encode()
 JSON = b"Content-Type: application/json\r\n"
@@ -150,8 +149,7 @@ def hostile_requests(count: int, folder: Path, seed: int = 1) -> Count:
             family = _family(service.pid)
             service.send_signal(signal.SIGTERM)
             status = service.wait(60)
-    time.sleep(1.0)
-    left = [pid for pid in family if Path(f"/proc/{pid}").exists()]
+    left = still_running(family)
     found.add(
         "left running" if left or status else "ended by a signal, nothing left", f"{left}, status {status}"
     )
