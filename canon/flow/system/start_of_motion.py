@@ -7,7 +7,6 @@ from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from sympy import MatrixBase
 
 from canon.expression.symbols.user_input import counted, listed
 from canon.mechanics.algebra.dynamicsymbols import coordinate
@@ -47,8 +46,8 @@ def read_by_labels(y0: Any) -> Any:
     """
     if np.ma.is_masked(y0):
         raise ValueError(f"numbers of the start are masked ({y0}): give them all")
-    if isinstance(y0, MatrixBase) and y0.cols == 1:
-        return list(y0)  # pyright: ignore[reportUnknownArgumentType, reportUnknownVariableType]
+    if getattr(y0, "is_Matrix", False) and y0.shape[1] == 1:
+        return [y0[k] for k in range(y0.shape[0])]
     if isinstance(y0, Mapping):
         return y0  # pyright: ignore[reportUnknownVariableType]
     table = y0.to_pandas() if hasattr(y0, "dims") and hasattr(y0, "to_pandas") else y0
