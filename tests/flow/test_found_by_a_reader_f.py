@@ -17,6 +17,7 @@ from canon.flow import (
     poincare_section,
 )
 from canon.flow.chaos.alignment_index import _verdict
+from canon.scene import find
 
 x, y, z = coordinates("x y z")
 px, py, pz = (s.momentum for s in (x, y, z))
@@ -126,3 +127,13 @@ def test_a_kept_section_has_the_passage_at_the_border_of_two_parts(method, step,
         times = [each.kept["section"]["t"] for each in results_of(file)]
         assert [len(t) for t in times] == [1, 1, 1]
         np.testing.assert_allclose(np.concatenate(times), [200.0, 150.0, 200.0], atol=1e-9)
+
+
+def test_a_start_that_was_made_for_another_parameter_says_so():
+    kepler = find("kepler")
+    other = kepler.with_parameters(mu=1.0)
+    assert other.starts[0].about == "perihelion of an orbit of eccentricity 0.6, made for mu = 39.4769"
+    assert other.with_parameters(mu=2.0).starts[0].about == other.starts[0].about
+    np.testing.assert_array_equal(other.state(), kepler.state())
+    assert kepler.with_parameters(mu=kepler.values["mu"]).starts == kepler.starts
+    assert find("simple-pendulum").with_parameters(l=2.0).starts == find("simple-pendulum").starts
