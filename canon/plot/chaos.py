@@ -110,7 +110,7 @@ def plot_chaos_map(
     PlotError
         Where matplotlib is not installed.
     ValueError
-        There is not one place for each orbit, or the places are no grid.
+        There is not one place for each orbit, two are the same, or the places are no grid.
     """
     axes = new_axes(ax)
     values, verdict = _values(indicator)
@@ -121,16 +121,28 @@ def plot_chaos_map(
             f"{values.size} orbits at {columns.size} values across and {rows.size} up are no grid: take the "
             "starts from numpy.meshgrid"
         )
+    place, number = np.unique(row * columns.size + column, return_counts=True)
+    if number.max(initial=1) > 1:
+        again = int(place[np.argmax(number)])
+        raise ValueError(
+            f"{number.max()} orbits are at one place, {columns[again % columns.size]:g} across and "
+            f"{rows[again // columns.size]:g} up, and one would hide the others: give a place for each"
+        )
     left = np.array([each.value == "left" for each in np.ravel(np.asarray(verdict, dtype=object))])
     shown = np.ma.masked_all((rows.size, columns.size))
     shown[row, column] = np.ma.masked_array(values, mask=left | ~np.isfinite(values))
-    low, high = limits or (float(shown.min()), float(np.percentile(shown.compressed(), 98)))
+    low, high = limits or _limits(shown.compressed())
     axes.set_facecolor("#c8c8c8")
     picture = axes.pcolormesh(columns, rows, shown, cmap="cividis", vmin=low, vmax=high, shading="nearest")
     axes.figure.colorbar(picture, ax=axes, label=_name(indicator), extend="max")
     axes.set_xlabel(names[0])
     axes.set_ylabel(names[1])
     return axes
+
+
+def _limits(values: NDArray[np.float64]) -> tuple[float, float]:
+    """Return the values at the ends of the colours; any where all orbits have left, and the map is grey."""
+    return (float(values.min()), float(np.percentile(values, 98))) if values.size else (0.0, 1.0)
 
 
 def _line(places: ArrayLike, orbits: int) -> tuple[NDArray[np.float64], NDArray[np.intp]]:

@@ -37,7 +37,8 @@ def plot_energy_error(
     """Draw ``|ΔE/E|``, or the error of what else was followed, against time, both logarithmic, one line a method.
 
     The line is the largest error in each of about a hundred intervals of log t, the shade below it reaches down to
-    the median. Guides show how a bounded error, round-off and a secular error rise.
+    the median. Guides show how a bounded error, round-off and a secular error rise. Of many orbits the largest error
+    of all counts at each time; a motion back in time is drawn against the time that has passed.
 
     Parameters
     ----------
@@ -209,9 +210,22 @@ def _lines(of: DriftStudy | Trajectory | Sequence[Trajectory] | Sequence[Result]
     lines = [
         line
         for motion in motions
-        for line in _line(str(motion.method), motion.t - motion.t[0], motion.energy_error)
+        for line in _line(
+            _name_of_motion(motion), np.abs(motion.t - motion.t[0]), _worst(motion.energy_error)
+        )
     ]
     return _Lines(lines, relative=all(motion.relative for motion in motions))
+
+
+def _worst(error: Array) -> Array:
+    """Return an error's largest size over the orbits, shape (times,); of those that are still there."""
+    return error if error.ndim == 1 else np.fmax.reduce(np.abs(error), axis=1)
+
+
+def _name_of_motion(motion: Trajectory) -> str:
+    return (
+        str(motion.method) if motion.y.ndim == 2 else f"{motion.method}, worst of {motion.y.shape[2]} orbits"
+    )
 
 
 def _lines_of_drifts(study: DriftStudy) -> _Lines:

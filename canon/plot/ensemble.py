@@ -56,7 +56,7 @@ def plot_ensemble_fan(of: Trajectory, ax: Axes | None = None, *, intervals: int 
         raise ValueError(
             "a fan shows the spread over orbits: propagate four or more, states of shape (2n, orbits)"
         )
-    when, largest = _largest(of.t - of.t[0], np.abs(of.energy_error), intervals)
+    when, largest = _largest(np.abs(of.t - of.t[0]), np.abs(of.energy_error), intervals)
     if not largest.any():
         raise ValueError("the error is zero throughout: there is nothing to draw on a logarithmic axis")
     least = largest[largest > 0.0].min()

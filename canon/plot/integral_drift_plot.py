@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.plot.style import COLOURS, new_axes, tidy
+from canon.plot.style import COLOURS, MARKERS, new_axes, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,13 +27,22 @@ def plot_integral_drift(*drifts: IntegralDrift, ax: Axes | None = None) -> Axes:
         Where to draw; a new figure if left out.
     """
     axes = new_axes(ax)
-    for colour, drift in zip(COLOURS, drifts, strict=False):
+    for k, drift in enumerate(drifts):
+        again, own = divmod(k, len(COLOURS))
+        colour, marker = COLOURS[own], MARKERS[again % len(MARKERS)]
         radii, changes = np.array(drift.radii), np.array(drift.drifts)
         seen = "drift below rounding" if drift.slope is None else f"slope {drift.slope:.2f}"
-        axes.loglog(radii, changes, "o", color=colour, label=f"order {drift.expected - 1}: {seen}")
+        axes.loglog(
+            radii,
+            changes,
+            marker,
+            linestyle="none",
+            color=colour,
+            label=f"order {drift.expected - 1}: {seen}",
+        )
         line = changes[-1] * (radii / radii[-1]) ** drift.expected
         axes.loglog(radii, line, "-", color=colour, linewidth=0.8)
-    axes.set_xlabel("distance of the start from the equilibrium")
+    axes.set_xlabel("distance of the start from the equilibrium, or ε")
     axes.set_ylabel("largest change of the formal integral")
     axes.legend(frameon=False)
     tidy(axes)

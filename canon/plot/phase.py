@@ -27,6 +27,8 @@ def plot_phase_portrait(
 ) -> Axes:
     """Draw one coordinate against its momentum along one or several trajectories.
 
+    Of a motion without momenta, as of a vector field, the variables are drawn that stand in their places.
+
     Parameters
     ----------
     of
@@ -45,9 +47,10 @@ def plot_phase_portrait(
     ValueError
         Where there is no such degree of freedom.
     """
-    axes = new_axes(ax)
+    axes, names = new_axes(ax), set[tuple[str, str]]()
     for index, motion in enumerate(several(of)):
-        q, p = _plane(motion.y, degree)
+        q, p, name = _plane_of_motion(motion, degree)
+        names.add(name)
         axes.plot(
             q,
             p,
@@ -56,7 +59,12 @@ def plot_phase_portrait(
             markersize=1.5,
             linewidth=1.0,
         )
-    _name_axes(axes, degree)
+    if len(names) == 1:
+        across, up = names.pop()
+        axes.set_xlabel(across)
+        axes.set_ylabel(up)
+    else:
+        _name_axes(axes, degree)
     tidy(axes)
     return axes
 
@@ -127,6 +135,22 @@ def _crossings(met: Sequence[Crossing] | ArrayLike, name: str) -> NDArray[np.flo
     if found.ndim != 2 or not found.size or len(found) % 2:
         raise ValueError(f"{name}: no crossings to draw; states at crossings have shape (2n, crossings)")
     return found
+
+
+def _plane_of_motion(
+    motion: Trajectory, degree: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64], tuple[str, str]]:
+    """Return a coordinate and its momentum with their names; of what has no momenta two variables."""
+    names = motion.record.names
+    try:
+        q, p = motion.q, motion.p
+    except AttributeError:  # momenta are not known of this system
+        n = len(motion.y) // 2
+        return *_plane(motion.y, degree), (names[degree], names[n + degree])
+    found = _plane(np.concatenate([q, p]), degree)
+    # The state of a Lagrangian is (q, q̇), its momenta are ∂L/∂q̇.
+    own = motion.record.moving is None
+    return *found, (names[degree], names[len(q) + degree] if own else f"p_{names[degree]}")
 
 
 def _plane(y: NDArray[np.float64], degree: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from canon.plot.style import GREY, PlotError, new_axes
 from canon.study.cases.result import State
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from matplotlib.axes import Axes
 
@@ -66,7 +66,7 @@ def plot_study_heatmap(results: Sequence[Result], ax: Axes | None = None, *, wha
     values = np.full((len(rows), len(columns)), np.nan)
     for result in results:
         if result.state is State.FINISHED:
-            size = result.seconds if what == "seconds" else abs(result.numbers[what])
+            size = result.seconds if what == "seconds" else _size(result.numbers, what)
             values[rows.index(result.motion), columns.index(result.setting)] = size or np.nan
     if np.isfinite(values).any():
         _colour(axes, values, what)
@@ -80,6 +80,12 @@ def plot_study_heatmap(results: Sequence[Result], ax: Axes | None = None, *, wha
     told = ", ".join(f"{number} {state.value}" for state, number in count.items() if number)
     axes.set_title(f"{counted(len(results), 'case')}: {told}", loc="left", fontsize="medium")
     return axes
+
+
+def _size(numbers: Mapping[str, Any], what: str) -> float:
+    """Return the size of a number; of the drift that of the mean, or of an oscillation that widens faster."""
+    widens = what == "slope" and numbers["verdict"] == "secular"
+    return max(abs(numbers[what]), abs(numbers["amplitude_slope"]) if widens else 0.0)
 
 
 def _sized_axes(rows: int, columns: int) -> Axes:

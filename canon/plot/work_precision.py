@@ -112,7 +112,7 @@ def plot_drift_by_step(
         Where to draw; a new figure if left out.
     what
         ``"bound"`` for the largest ``|ΔE/E|``, ``"slope"`` for the drift per unit of time (not of work–precision
-        runs, which are too short for one).
+        runs, which are too short for one): of the mean, or of the oscillation's size where that grows faster.
 
     Raises
     ------
@@ -186,13 +186,16 @@ def _point_of_drift(of: DriftRow | Result, what: str) -> _Point | None:
         drift = of.drift
         if drift is None:
             return None
-        values = (drift.bound, drift.slope, drift.detection_limit, drift.verdict.value)
+        slope = max(abs(drift.slope), abs(drift.amplitude_slope))
+        values = (drift.bound, slope, drift.detection_limit, drift.verdict.value)
         return _point(str(of.method), of.step, what, *values)
     if not of.numbers:
         return None
     name = ", ".join(part for part in (str(of.case.method), of.case.precision) if part)
-    numbers = (of.numbers[v] for v in ("bound", "slope", "detection_limit", "verdict"))
-    return _point(name, of.numbers["step"], what, *numbers)
+    numbers = of.numbers
+    slope = max(abs(numbers["slope"]), abs(numbers["amplitude_slope"]))
+    values = (numbers["bound"], slope, numbers["detection_limit"], numbers["verdict"])
+    return _point(name, numbers["step"], what, *values)
 
 
 def _point(
@@ -201,7 +204,7 @@ def _point(
     if what == "bound":
         return _Point(name, step or 0.0, bound)
     drifts = verdict in ("secular", "diverged")
-    return _Point(name, step or 0.0, abs(slope) if drifts else limit, limit=not drifts)
+    return _Point(name, step or 0.0, slope if drifts else limit, limit=not drifts)
 
 
 def _draw(axes: Axes, x: np.ndarray, y: np.ndarray, index: int, name: str) -> None:

@@ -242,6 +242,9 @@ class Scene:
     def with_parameters(self, **values: float) -> Scene:
         """Return the scene with other values of some parameters, without the motions that are not known then.
 
+        Starts stay the numbers that they are; what was said of those made for other values says so, as that p at a
+        perihelion belongs to another mu.
+
         Raises
         ------
         SceneError
@@ -257,7 +260,14 @@ class Scene:
         moved = {c.name for c, now in zip(self.parameters, changed, strict=True) if c.value != now.value}
         unfit = {start.name for start in self.starts if moved & set(start.made_for.split())}
         known_still = tuple(solution for solution in self.solutions if solution.start not in unfit)
-        return replace(self, parameters=changed, solutions=known_still)
+        starts = tuple(self._told(start, moved) if start.name in unfit else start for start in self.starts)
+        return replace(self, parameters=changed, solutions=known_still, starts=starts)
+
+    def _told(self, start: Start, moved: set[str]) -> Start:
+        """Return a start whose words say for which values of the parameters that have moved it was made."""
+        others = [name for name in start.made_for.split() if name not in moved]
+        was = ", ".join(f"{name} = {self.values[name]:g}" for name in start.made_for.split() if name in moved)
+        return replace(start, about=f"{start.about}, made for {was}", made_for=" ".join(others))
 
     def start(self, name: str | None = None) -> Start:
         """Return the start of that name, or the default one."""

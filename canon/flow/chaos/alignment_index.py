@@ -11,6 +11,7 @@ from canon.flow.chaos.chaos_indicators import ChaosIndicator, indicator_of
 from canon.flow.chaos.regularity import Judged, Regularity, quarters
 from canon.flow.tangent.deviation_frame import random_vectors
 from canon.flow.tangent.deviation_growth import DeviationRun, deviation_growth, deviation_task
+from canon.flow.tangent.deviation_units import deviation_units
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from canon.array import Array
     from canon.flow.method.method_text import MethodGiven
     from canon.flow.system.recognised_system import MovableSystem
+    from canon.flow.task import Task
 
 __all__ = ["gali", "sali"]
 
@@ -131,7 +133,7 @@ def gali(
     <Regularity.CHAOTIC: 'chaotic'>
     """
     run = DeviationRun(system, t_span, y0, method, step, tolerance, precision, parameters, samples, progress)
-    return _index(f"GALI_{vectors}", run, vectors, seed, _log_volume)
+    return _index("GALI_{}", run, vectors, seed, _log_volume)
 
 
 def _index(
@@ -141,10 +143,32 @@ def _index(
     size = len(task.system.rows)
     if vectors not in range(2, size + 1):
         raise ValueError(f"vectors={vectors}: an alignment index takes 2 … {size} deviations of this system")
-    frame = random_vectors(size, vectors, seed)
-    growth = deviation_growth(task, frame, orthogonal=False, note=note, progress=run.progress)
+    vectors = int(vectors)
+    units = _units(task)
+    frame = units * random_vectors(size, vectors, seed)
+    frame /= np.linalg.norm(frame, axis=0)
+
+    def noted(frames: Array) -> Array:
+        measured = frames / units[:, np.newaxis]
+        return note(measured / np.linalg.norm(measured, axis=0))
+
+    growth = deviation_growth(task, frame, orthogonal=False, note=noted, progress=run.progress)
     assert growth.noted is not None
-    return indicator_of(name, growth, np.exp(growth.noted), _judged(growth.t, growth.noted, vectors))
+    return indicator_of(
+        name.format(vectors), growth, np.exp(growth.noted), _judged(growth.t, growth.noted, vectors)
+    )
+
+
+def _units(task: Task) -> Array:
+    """Return the sizes that components of deviations are measured in, shape (2n, 1).
+
+    Where a coordinate's unit is 10⁸ of its momentum's all deviations are parallel but for what rounding leaves.
+    """
+    system = task.system
+    if not system.canonical or task.method.solvable is not None:  # the latter have units of their own
+        return np.ones((len(system.rows), 1))
+    start = (task.states[0] + task.states[1])[:, 0]
+    return deviation_units(system, start, float(task.plan.start))[system.rows, np.newaxis]
 
 
 def _smaller_alignment(frames: Array) -> Array:
@@ -184,12 +208,13 @@ def _verdict(t: Array, chaotic: float, log: Array) -> tuple[Regularity, str]:
     end = int(below[0]) + 1 if below.size else len(t)
     second, last = quarters(t[:end])
     known = log[:end][second].size and log[:end][last].size
-    unknown = float("inf") if chaotic == _CHAOTIC else 0.0  # of few samples
-    fall = float(log[:end][second].mean() - log[:end][last].mean()) if known else unknown
+    fall = float(log[:end][second].mean() - log[:end][last].mean()) if known else 0.0
     seen = f"the volume fell to {np.exp(log[end - 1]):.2g} by t = {t[end - 1]:.4g}"
     if below.size:
         if fall > chaotic:
             return Regularity.CHAOTIC, f"{seen}, faster than a power of time"
+        if not known:
+            return Regularity.NOT_KNOWN, f"{seen}, and too few samples before it show how: take more samples"
         return (
             Regularity.NOT_KNOWN,
             f"{seen}, which a power of time may do too: take fewer deviations, or megno",

@@ -20,7 +20,7 @@ import numpy.typing as npt
 if TYPE_CHECKING:
     from canon.array import Array
 
-__all__ = ["FloquetMultipliers", "floquet_multipliers", "symplectic_inverse"]
+__all__ = ["FloquetMultipliers", "floquet_multipliers", "near_double", "symplectic_inverse"]
 
 _ROUNDING = 1e-14
 """Of the square of the largest entry of M, nearly: what its entries are known to."""
@@ -136,9 +136,14 @@ def _krein(value: complex, vector: npt.NDArray[np.complex128], form: Array, accu
     return int(np.sign((-1j * (vector.conj() @ form @ vector)).real))
 
 
+def near_double(accuracy: float) -> float:
+    """Return how far from ±2 rounding may bring an index that is there, as a double root; so of two that are equal."""
+    return accuracy + float(np.sqrt(accuracy)) * 0.1
+
+
 def _kind(index: complex, accuracy: float) -> str:
     """Return what a pair is; at ±2 a double root, which rounding moves by the root of its size."""
-    near = accuracy + np.sqrt(accuracy) * 0.1
+    near = near_double(accuracy)
     if abs(abs(index.real) - 2) <= near and abs(index.imag) <= near:
         return "parabolic"
     if abs(index.imag) > near:

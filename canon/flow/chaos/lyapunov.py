@@ -180,7 +180,7 @@ def lyapunov_spectrum(
     count = size if vectors is None else vectors
     if count not in range(1, size + 1):
         raise ValueError(f"vectors={vectors}: the system has exponents 1 … {size}")
-    growth = deviation_growth(task, random_frame(size, count, seed), orthogonal=True, progress=progress)
+    growth = deviation_growth(task, random_frame(size, int(count), seed), orthogonal=True, progress=progress)
     return _spectrum(growth, size)
 
 

@@ -8,12 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.expression.symbols.user_input import counted
+from canon.flow.chaos.floquet import near_double
 from canon.flow.chaos.periodic_search import NoPeriodicOrbitError, PeriodicOrbit, PeriodicSearch
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.progress import reporting
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    import numpy.typing as npt
 
     from canon.array import Array
 
@@ -177,7 +180,7 @@ def _next(
 def _tangent(orbit: PeriodicOrbit, before: Array | None) -> Array:
     """Return the direction of the family in (y, T), of length 1 in its scale: as a form before, or as energy grows."""
     search, sizes = orbit.search, orbit.scale.both
-    found = search.kernel(orbit.y, orbit.period, orbit.scale)
+    found = search.kernel(orbit.y, orbit.period, orbit.scale, before)
     way = found * sizes
     sign = way[:-1] @ search.slope(orbit.y) if before is None else way @ before
     return found if sign >= 0 else -found
@@ -188,8 +191,8 @@ def _bifurcations(
 ) -> list[Bifurcation]:
     """Return where between two orbits the kind of a pair of multipliers changes, by halving the distance."""
     found: list[Bifurcation] = []
-    for kind, tested in _TESTS.items():
-        if tested(first) * tested(second) >= 0:
+    for kind in _VALUES:
+        if not _passed(kind, first, second):
             continue
         low, high, nearest = 0.0, length, second
         for _ in range(_REFINEMENTS):
@@ -197,7 +200,7 @@ def _bifurcations(
             if between is None:
                 break
             nearest = between
-            if tested(first) * tested(between) < 0:
+            if _passed(kind, first, between):
                 high = (low + high) / 2
             else:
                 low = (low + high) / 2
@@ -205,23 +208,33 @@ def _bifurcations(
     return found
 
 
-def _through_plus_one(orbit: PeriodicOrbit) -> float:
-    return float(np.prod(orbit.multipliers.indices - 2).real)
+def _passed(kind: str, first: PeriodicOrbit, second: PeriodicOrbit) -> bool:
+    """Tell whether a pair passes a bifurcation between two orbits.
+
+    One that is there at both ends, as that of a symmetry, passes none: its sign is rounding.
+    """
+    ends = [_VALUES[kind](orbit.multipliers.indices) for orbit in (first, second)]
+    power = 2 if kind == "collision" else 1
+    near = [(2 * near_double(orbit.multipliers.accuracy)) ** power for orbit in (first, second)]
+    staying = min(int((abs(values) <= off).sum()) for values, off in zip(ends, near, strict=True))
+    left = [values[np.argsort(abs(values))][staying:] for values in ends]
+    if kind == "collision":
+        a, b = (min(values.real, default=1.0) for values in left)
+    else:
+        a, b = (np.prod(values).real for values in left)
+    return bool(a * b < 0)
 
 
-def _through_minus_one(orbit: PeriodicOrbit) -> float:
-    return float(np.prod(orbit.multipliers.indices + 2).real)
+def _squares(indices: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
+    """Return discriminants of two indices each: negative where they are complex conjugates."""
+    return np.array(
+        [(a - b) ** 2 for k, a in enumerate(indices) for b in indices[k + 1 :]], dtype=np.complex128
+    )
 
 
-def _collision(orbit: PeriodicOrbit) -> float:
-    """Return the least discriminant of two indices: negative where they are complex conjugates."""
-    indices = orbit.multipliers.indices
-    squares = [float(((a - b) ** 2).real) for k, a in enumerate(indices) for b in indices[k + 1 :]]
-    return min(squares, default=1.0)
-
-
-_TESTS: dict[str, Callable[[PeriodicOrbit], float]] = {
-    "+1": _through_plus_one,
-    "-1": _through_minus_one,
-    "collision": _collision,
+_VALUES: dict[str, Callable[[npt.NDArray[np.complex128]], npt.NDArray[np.complex128]]] = {
+    "+1": lambda indices: indices - 2,
+    "-1": lambda indices: indices + 2,
+    "collision": _squares,
 }
+"""What changes its sign, by what the stability indices are."""

@@ -53,7 +53,7 @@ def periodic_orbit(
     y0, parameters
         As :func:`canon.propagate` takes them; one start.
     period
-        A guess of the period.
+        A guess of the period, positive.
     energy
         The orbit's energy; that of the start where not given.
     fixed_period
@@ -73,8 +73,13 @@ def periodic_orbit(
     NoPeriodicOrbitError
         Newton's method does not come to an end; the error has the nearest it came.
     TypeError, ValueError, KeyError
-        As ``propagate``; the system is no Hamiltonian; the reversal is none of its symmetries; it depends on time, and
-        is not the same after the period.
+        As ``propagate``; the period is not positive; the system is no Hamiltonian; the reversal is none of its
+        symmetries; it depends on time, and is not the same after the period.
+
+    Notes
+    -----
+    What is found near the start may close after a part of the period already, as a fixed point of a map does after any:
+    ``least_period`` has the shortest time, M and the multipliers are those of the whole period.
 
     Examples
     --------
@@ -84,6 +89,10 @@ def periodic_orbit(
     >>> round(orbit.period, 6), orbit.multipliers.kinds
     (17.065217, ('hyperbolic',))
     """
+    if not float(period) > 0:
+        raise ValueError(
+            f"period={period}: give a guess of the time after which the orbit comes back, above 0"
+        )
     given = Request(
         system, (0.0, float(period)), y0, method=method, step=step, tolerance=tolerance, parameters=parameters,
         samples=1,
@@ -140,6 +149,8 @@ def _search(
         else task.states[0] + task.states[1]
     )
     if signs is not None:
+        if system.kicked and float(given.t_span[1]) % 2:
+            raise ValueError("reversal: a map has no state after half of an odd period; leave reversal out")
         start = np.where(signs < 0, 0.0, start)
         search.check_reversal(start, float(given.t_span[1]))
     return search, start

@@ -41,6 +41,13 @@ _SMALLEST_SINGULAR, _SURE_SINGULAR = 1e-9, 1e-3
 Where they are nearly so, as among Kepler's orbits, which all close, a step is better that leaves them alone."""
 
 
+_LAPS, _SAME = (2, 3, 5, 7, 11), 1e-6
+"""Parts of a period after which an orbit may close already, and how near, in its scale, at most."""
+
+_ALONG = 1e-6
+"""Part of a slope below which it says nothing of a direction."""
+
+
 class NoPeriodicOrbitError(ValueError):
     """Raised where no periodic orbit is found from a start.
 
@@ -79,6 +86,9 @@ class PeriodicOrbit:
         How it was found.
     scale
         The sizes of its variables, its period and its energy that it was measured by.
+    least_period
+        The shortest time after which it comes back: the period, unless that is a multiple. Of a system that depends on
+        time the period.
     """
 
     y: Array
@@ -89,11 +99,16 @@ class PeriodicOrbit:
     multipliers: FloquetMultipliers
     search: PeriodicSearch = field(repr=False)
     scale: OrbitScale = field(repr=False)
+    least_period: float
 
     def __repr__(self) -> str:
         stable = {True: "stable", False: "unstable", None: "of unknown stability"}[self.multipliers.stable]
         kinds = ", ".join(self.multipliers.kinds)
-        return f"<PeriodicOrbit: period {self.period:.12g}, energy {self.energy:.12g}, {stable} ({kinds})>"
+        laps = round(self.period / self.least_period)
+        over = f" ({laps} times {self.least_period:.12g})" if laps > 1 else ""
+        return (
+            f"<PeriodicOrbit: period {self.period:.12g}{over}, energy {self.energy:.12g}, {stable} ({kinds})>"
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -258,8 +273,25 @@ class PeriodicSearch:
         slope = self.slope(guess.y) * scale.state / scale.energy if self.equations.autonomous else None
         return PeriodicOrbit(
             guess.y, float(guess.period), self.energy(guess.y), guess.defect, scale.dimensional(M),
-            floquet_multipliers(M, slope), self, scale,
+            floquet_multipliers(M, slope), self, scale, self._least_period(guess),
         )  # fmt: skip
+
+    def _least_period(self, guess: _Guess) -> float:
+        """Return the shortest part of the period, with small primes, after which the orbit closes."""
+        laps = 1
+        if self.equations.autonomous or self.equations.kicked:
+            for prime in _LAPS:
+                while self._closes_after(guess, laps * prime):
+                    laps *= prime
+        return float(guess.period) / laps
+
+    def _closes_after(self, guess: _Guess, laps: int) -> bool:
+        time, turns = guess.period / laps, self.shift / (2 * np.pi * laps)
+        if (self.equations.kicked and time % 1) or abs(turns - turns.round()).max() > _LEFT:
+            return False
+        end = propagated(replace(self.request, t_span=(0.0, time), y0=guess.y, samples=1)).y[:, -1]
+        missed = (end - guess.y - self.shift / laps) / guess.scale.state
+        return bool(abs(missed).max() <= min(_SAME, 1e3 * guess.rounding))
 
     def _newton_step(self, guess: _Guess, across: Array | None, least: float) -> Array:
         """Return the step of (y, T) by which what does not close would vanish to first order."""
@@ -292,12 +324,26 @@ class PeriodicSearch:
             values.append(0.0)
         return equations, values
 
-    def kernel(self, y: Array, period: float, scale: OrbitScale) -> Array:
-        """Return the direction (δy, δT), of length 1 in a scale, in which orbits go on closing to first order."""
+    def kernel(self, y: Array, period: float, scale: OrbitScale, before: Array | None = None) -> Array:
+        """Return the direction (δy, δT), of length 1 in a scale, in which orbits go on closing to first order.
+
+        Of several it is that in which the energy changes: along the others symmetries move the orbit. At a fold of the
+        energy it is the one nearest to the direction before, which is given as a form.
+        """
         rows, _ = self.conditions(_Guess.of(self, y, period, scale, None))
         free = self._free(len(y) + 1)
         found = np.zeros(len(y) + 1)
-        found[free] = np.linalg.svd(np.array(rows)[:, free])[2][-1]
+        _, singular, directions = np.linalg.svd(np.array(rows)[:, free])
+        rank = int((singular > _SMALLEST_SINGULAR * singular[0]).sum())
+        closing = directions[min(rank, len(directions) - 1) :]
+        found[free] = closing[-1]
+        for form in (np.append(self.slope(y), 0.0), before) if len(closing) > 1 else ():
+            if form is not None:
+                bare = form * scale.both
+                along = closing @ bare[free]
+                if np.linalg.norm(along) > _ALONG * np.linalg.norm(bare):
+                    found[free] = along @ closing / np.linalg.norm(along)
+                    break
         return found
 
     def _free(self, size: int) -> npt.NDArray[np.bool_]:

@@ -163,7 +163,7 @@ def poincare_section(
     NonFiniteStateError
         An orbit is lost before it has its points.
     KeyError, TypeError, ValueError
-        As ``propagate``; ``points`` is no positive number; g does not depend on the motion.
+        As ``propagate``; ``points`` is no whole positive number; the system is a map; g does not depend on the motion.
 
     Notes
     -----
@@ -185,18 +185,25 @@ def poincare_section(
     >>> found.counts.tolist(), bool(abs(found["x"]).max() < 1e-12), bool(abs(found.energy_change).max() < 1e-9)
     ([50, 50], True, True)
     """
-    if points is not None and points < 1:
-        raise ValueError(f"points={points!r}: how many points of each orbit are wanted, 1 or more")
+    if points is not None and (points < 1 or points % 1):
+        raise ValueError(
+            f"points={points!r}: how many points of each orbit are wanted, a whole number from 1 on"
+        )
     request = Request(
         system, t_span, y0, method=method, step=step, tolerance=tolerance, precision=precision,
         parameters=parameters, samples=1,
     )  # fmt: skip
     task, moving = any_task(request)
     refuse_contacts(moving, "a section")
+    if task.system.kicked:
+        raise ValueError(
+            "a map has no states between its iterations, and none on a surface: its iterates are the points, "
+            "propagate(map, (0, times), y0)"
+        )
     g = surface if isinstance(surface, str) else given_expression(surface, "the surface of section")
     event = Event(_expression(task, g), direction)
     with reporting(progress) as report:
-        found = _places(task, event, points, report)
+        found = _places(task, event, None if points is None else int(points), report)
     rows, orbits = task.system.rows, task.states[0].shape[1]
     if not len(found.t):
         a, b = (float(task.plan.instants[k]) for k in (0, -1))

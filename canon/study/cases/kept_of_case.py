@@ -12,7 +12,7 @@ import numpy as np
 from canon.flow.chaos.chaos_indicators import megno
 from canon.flow.chaos.regularity import Regularity
 from canon.flow.geometry.flow_jacobian import flow_jacobian
-from canon.flow.run.event import Event
+from canon.flow.run.event import Event, prepared_events
 from canon.study.cases.case_observables import read_formula
 from canon.study.kept.keep_choice import CHAOS, DIRECTIONS, EXPONENT, MOTION, SECTION
 from canon.study.kept.kept_arrays import finite_arrays
@@ -66,8 +66,18 @@ def kept_on_the_way(
         new[MOTION] = rows_as_text(_in_own_variables(found.y, timed)[:, first:])
     if SECTION in dict(case.keep):
         rows = [[met.t, *_in_own_variables(met.y, timed)] for met in found.events]
+        if so_far and _passes_at_start(found, section_of(case, timed)[0]):
+            rows.insert(0, [float(found.t[0]), *_in_own_variables(found.y[:, 0], timed)])
         new[SECTION] = rows_as_text(np.array(rows).T)
     return {name: (*so_far.get(name, ()), text) for name, text in new.items()}
+
+
+def _passes_at_start(found: Trajectory, section: Event) -> bool:
+    """Tell whether a part begins on the section and passes it: the part before ended there, this one starts there."""
+    record = found.record
+    event = prepared_events(record.task.system, [section])[0]
+    value, rate = (float(values[0]) for values in record.values((event.value, event.rate)))
+    return value == 0.0 and rate != 0.0 and section.counts(rising=rate > 0.0)
 
 
 def kept_arrays(
