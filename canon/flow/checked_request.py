@@ -26,6 +26,7 @@ from canon.flow.transformed.extended_hamiltonian import extended, extended_syste
 from canon.frozen_mapping import FrozenMapping
 from canon.kernel.llvm.number_types import double_pair
 from canon.kernel.program.hamilton_equations import HamiltonEquations, equations, exact_number, exact_numbers
+from canon.mechanics.algebra.dynamicsymbols import in_own_time
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -134,7 +135,11 @@ def course_with(
         raise ValueError(
             "observables: 'energy' is the Hamiltonian, which is always observed; take another name"
         )
-    observed = [system.observable(f, f"the observable {name!r}") for name, f in extra.items()]
+    both = (*system.q, *system.p)
+    observed = [
+        system.observable(in_own_time(f, both, system.t), f"the observable {name!r}")
+        for name, f in extra.items()
+    ]
     wanted, plan, frame = sampling(ends, request.samples, request.times), None, None
     if method.engine is FIXED_STEPS:
         plan = planned(wanted, request.step, method)

@@ -57,7 +57,8 @@ def propagate(
     Parameters
     ----------
     system
-        In any consistent units, with its state y0 in this order:
+        In any consistent units. The time in it is ``canon.time``, the same symbol as ``sympy.Symbol("t", real=True)``;
+        a bare ``Symbol("t")``, as SymPy's ``dynamicsymbols._t`` is, is taken for it. The state y0 is in this order:
 
         - a Hamiltonian: (q, p);
         - a Lagrangian with its forces, or a ``ConstrainedLagrangian``: (q, q̇). Constraints are differentiated and
@@ -73,7 +74,7 @@ def propagate(
         - SymPy's ``LagrangesMethod``: (q, q̇);
         - a scene or its name: (q, p) where a Hamiltonian says all, else (q, q̇); its parameters have values already.
     t_span
-        The first and the last time; the last may be the earlier one.
+        The first and the last time; the last may be the earlier one. Two equal times are refused.
     y0
         The starting state, shape (2n,), or many of them, shape (2n, orbits); or a number for each variable by symbol or
         name, ``{theta: 0.1, "theta_dot": 0}``. Floats are taken for the numbers they are; text, fractions and long
@@ -90,29 +91,37 @@ def propagate(
         ``canon.flow.MagneticSplitting(...)``; not symplectic, but keeping the energy:
         ``canon.flow.AverageVectorField(...)``; for a Lagrangian with its forces
         ``canon.flow.GalerkinVariational(...)``. Or a method by its name, such as ``"verlet"``,
-        ``"kahan-li-8"``, ``"RK4"``, ``"gauss-6"``, ``"taylor"``, ``"saba-4"``.
+        ``"kahan-li-8"``, ``"RK4"``, ``"gauss-6"``, ``"taylor"``, ``"saba-4"``: case, hyphens and blanks are of
+        no account, and all names are on the page *My problem is …*. The number in ``"gauss-6"`` and ``"saba-4"`` is
+        that of the stages, in ``"kahan-li-8"`` and most others that of the order.
     step
         Step size of a fixed-step method. The step taken is the largest one not above it that divides the
-        span; ``Trajectory.step`` has it. Of a time-transformed method: the size in t of the first step.
+        span; ``Trajectory.step`` has it, and a motion is resumed to a time a whole number of those away. Of a
+        time-transformed method: the size in t of the first step.
     tolerance
-        Relative tolerance of an adaptive method, in place of the method's own.
+        Relative tolerance of an adaptive method, in place of the method's own. Of Taylor's method it is a part of the
+        largest number in the state, coordinates and momenta alike, in whatever units: a variable that is small beside
+        it may have as many digits less. Of DOP853 it is a part of each component and of the largest of its kind, see
+        :class:`canon.DOP853`.
     max_step
         The longest step that an adaptive method may take; as long as its tolerance allows where not given.
     precision
         Fixed steps: ``"single"``, ``"double"``, ``"compensated"`` (the default: doubles, what rounding takes
         from the state being carried along so that little is lost), ``"extended"`` (64 bits, x86 only),
         ``"double-double"`` (106 bits; all functions but the inverse hyperbolic ones). Taylor: ``"double"``,
-        ``"extended"``, ``"quad"`` or decimal digits.
+        ``"extended"``, ``"quad"`` or decimal digits. What is beyond doubles stands in ``Trajectory.carried``.
     parameters
         A number for every parameter of H, by symbol or name; or, where it differs from orbit to orbit, an array
-        of shape (orbits,).
+        of shape (orbits,), beside numbers for the others. A single start, shape (2n,), is then that of every orbit.
     samples
-        How many sampled states to keep after the first, evenly spaced up to a step; 1000 where not given. Of one
-        time-transformed orbit: about so many up to twice as many, evenly spaced in steps.
+        How many sampled states to keep after the first, 1 or more, evenly spaced up to a step; 1000 where not given,
+        and with fixed steps no more than there are. Of one time-transformed orbit: about so many up to twice as many,
+        evenly spaced in steps.
     times
-        In place of ``samples``: times at which to keep the state, in order, within the span. Both ends of the
-        span are kept as well. Taylor and DOP853 are evaluated exactly there; methods of fixed steps keep the
-        state after the step nearest to each, and ``Trajectory.t`` has the times of those steps. Time-transformed
+        In place of ``samples``: times at which to keep the state, within the span, in the order in which they are
+        passed (falling, where the last time is the earlier one), each once. Both ends of the span are kept as well
+        where they are not among the times. Taylor and DOP853 are evaluated exactly there; methods of fixed steps keep
+        the state after the step nearest to each, and ``Trajectory.t`` has the times of those steps. Time-transformed
         methods land there: each state is reached from the motion's last step before by a part of a step, found in
         about two trials, which leaves the motion as it is.
     observables
@@ -139,8 +148,9 @@ def propagate(
     -------
     Trajectory
         Sampled states, energies evaluated in higher precision than the states, and the cost. What moves is read
-        by name, ``motion["theta"]``. Where forces or the time do work, that is integrated along, and
-        ``energy_error`` is the defect of the energy balance. Many orbits
+        by name, ``motion["theta"]``. Where forces or the time do work, that is integrated along, by whatever method,
+        and ``energy_error`` is the defect of the energy balance; not so of a Hamiltonian that depends on time, whose
+        ``energy_change`` is the work, and of which there is no ``energy_error``. Many orbits
         run side by side in SIMD lanes and on threads (splittings and RK4) and give arrays with a last axis
         for the orbits. Time-transformed orbits have steps of their own and run one by one, their states kept at
         common times.

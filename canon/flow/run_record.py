@@ -226,7 +226,10 @@ class RunRecord:
             The system is a Hamiltonian, along whose motion no work is integrated; or no energy is known.
         """
         if self.moving is None:
-            raise AttributeError("the work done on a Hamiltonian system is its energy_change")
+            raise AttributeError(
+                "the work done on a Hamiltonian system is its energy_change; the motion of a Lagrangian has the work "
+                "that was integrated along"
+            )
         node = self.moving.work
         return np.zeros_like(self.energies.values) if node is None else self.values([node])[0]
 

@@ -47,7 +47,9 @@ class Trajectory:
         States (q, p), shape (2n, times); of many orbits, shape (2n, times, orbits), and so on below.
     carried
         What the states are beyond doubles (compensation, or the digits of a higher precision): the state is
-        y + carried, shape (2n, times).
+        y + carried, shape (2n, times). ``final`` and a variable by name, ``motion["x"]``, are rows of y alone;
+        energies, observables and functions such as ``motion[2 * x]`` are evaluated with both, and rounded to doubles
+        last.
     energies
         The energy at the samples and its change, evaluated in higher precision than the states; None of a system
         of which no energy is known.
@@ -209,20 +211,30 @@ class Trajectory:
 
     @property
     def energy_defect(self) -> Array:
-        """The energy's change less the work done, which is an error; of a Hamiltonian the change; shape (times,)."""
+        """The energy's change less the work done, which is an error; of a Hamiltonian the change; shape (times,).
+
+        Of a Hamiltonian that depends on time the change is work, and no error.
+        """
         return self.record.energies.defect
 
     @property
     def work(self) -> Array:
         """The work done on the system since the start, by forces and by what depends on time, shape (times,).
 
-        It was integrated along as a further variable; 0 where the energy is conserved.
+        It was integrated along as a further variable by whatever method carries the motion, of fixed steps too; 0 where
+        the energy is conserved.
+
+        Raises
+        ------
+        AttributeError
+            The system is a Hamiltonian, along whose motion no work is integrated: what is done on one that depends on
+            time is ``energy_change``. Or no energy is known of the system.
         """
         return self.record.work
 
     @property
     def final(self) -> Array:
-        """The state at the last time, shape (2n,)."""
+        """The state at the last time, shape (2n,), in doubles: what is beyond them is ``carried[:, -1]``."""
         return self.y[:, -1]
 
     @property
@@ -234,17 +246,24 @@ class Trajectory:
     def energy_error(self) -> Array:
         """Relative error of the energy, (H − H₀)/abs(H₀), or H − H₀ where H₀ = H(start) is zero; shape (times,).
 
-        Where forces or what depends on time do work, the defect of the energy balance, E(t) − E(0) − W(t) with
-        W = ∫ power dt, takes the place of H − H₀. An H₀ that is nothing beside the terms of H counts as zero. What a
-        user's own events change the energy by is in it, and is no error.
+        Of systems that were not given as a Hamiltonian, such as a ``Lagrangian``, the defect of the energy balance,
+        E(t) − E(0) − W(t) with W = ∫ power dt, takes the place of H − H₀ where forces or what depends on time do work.
+        An H₀ that is nothing beside the terms of H counts as zero. What a user's own events change the energy by is in
+        it, and is no error.
 
         Raises
         ------
         ValueError
-            H depends on time, so that its change is no error; see ``energy_change``.
+            The system is a Hamiltonian that depends on time: its change is work, which is not integrated along, and no
+            error. ``energy_change`` has it; the motion of the Lagrangian has the work as well.
+        AttributeError
+            No energy is known of the system.
         """
         if self.record.moving is None and not self.autonomous:
-            raise ValueError("H depends on t, so its change is no error; energy_change has it")
+            raise ValueError(
+                "H depends on t, so its change is no error; energy_change has it. The motion of a Lagrangian has the "
+                "work done as well, and with it an error; drift_study(system, …) follows one of a Hamiltonian too"
+            )
         defect = self.record.energies.defect
         return defect / abs(self.energy[0]) if self.relative else defect
 
@@ -276,7 +295,11 @@ class Trajectory:
         return error_estimate(record.task, record.with_events_of(orbits), change, orbits)
 
     def to_xarray(self) -> xarray.Dataset:
-        """Return the variables, the energy and the observables as an xarray dataset along ``t`` (extra ``export``)."""
+        """Return the variables, the energy and the observables as an xarray dataset along ``t`` (extra ``export``).
+
+        Of many orbits its dimensions are ``t`` and ``orbit``, counted from 0. Attributes say the method, the precision
+        and the number of steps.
+        """
         columns = dict(zip(self.record.names, self.y, strict=True))
         if self.energies is not None and "energy" not in columns:
             columns["energy"] = self.energy
@@ -337,7 +360,9 @@ class Trajectory:
         Parameters
         ----------
         until
-            The new last time, a whole number of fixed steps away; where not given, an interrupted run is completed.
+            The new last time, a whole number of fixed steps ``motion.step`` away, which may be shorter than the one
+            asked for (the error names the nearest); anything later with adaptive methods. Where not given, an
+            interrupted run is completed.
         samples, times
             When to keep the state on the new part; as densely as before where not given. A time-transformed motion
             that keeps states evenly in steps does so anew, about so many in all.

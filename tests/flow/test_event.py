@@ -35,6 +35,24 @@ def times(motion):
     return [met.t for met in motion.events]
 
 
+def test_what_is_no_variable_is_told_apart():
+    def swing(t, y):
+        return [y[1], -y[0]]
+
+    met = propagate(swing, (0, 2), [1.0, 0.0], events=[Event(sp.Symbol("y_0", real=True))]).events
+    assert abs(met[0].t - np.pi / 2) < 1e-14
+    with pytest.raises(
+        KeyError, match=r"holds y_0: another symbol than the variable y_0.*Symbol\('y_0', real=True\)"
+    ):
+        propagate(swing, (0, 2), [1.0, 0.0], events=[Event(sp.Symbol("y_0"))])
+    with pytest.raises(
+        KeyError, match=r"holds x_dot: velocities are no variables here, write it in x, p_x, t"
+    ):
+        propagate(OSCILLATOR, (0, 2), [1.0, 0.0], events=[Event(x.dot)])
+    with pytest.raises(KeyError, match=r"holds k: give each a number"):
+        propagate(OSCILLATOR, (0, 2), [1.0, 0.0], events=[Event(x - sp.Symbol("k"))])
+
+
 @pytest.mark.parametrize(("method", "how"), EVERY, ids=IDS)
 @pytest.mark.parametrize("forward", [1, -1])
 def test_a_stop_ends_the_motion_at_the_event(method, how, forward):

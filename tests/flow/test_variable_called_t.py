@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 
 from canon import (
     ConstrainedLagrangian,
+    Event,
     GeneratingFunction,
     Hamiltonian,
     Lagrangian,
@@ -36,6 +37,36 @@ def swung(until):
         rtol=1e-12,
         atol=1e-12,
     ).y[:, -1]
+
+
+def test_a_symbol_without_assumptions_is_the_time_everywhere():
+    bare = sp.Symbol("t")
+    free = Hamiltonian(p**2 / 2, [q], [p])
+    brackets = [[0, 1], [-1, 0]]
+    for clock in (t, bare):
+        field = propagate(VectorField([q * clock], [q]), (0, 1), [1.0])
+        assert abs(field.final[0] - np.exp(0.5)) < 1e-14
+        bent = propagate(PoissonSystem(p**2 / 2 - q * clock, [q, p], brackets), (0, 1), [0.0, 0.0])
+        assert abs(bent.final - [1 / 6, 1 / 2]).max() < 1e-15
+        motion = propagate(
+            free, (0, 4), [0.0, 1.0], events=[Event(q - 2 + clock)], observables={"z": q * clock}
+        )
+        assert abs(motion.events[0].t - 1) < 1e-14
+        assert abs(motion.observables["z"][-1] - 16) < 1e-13
+        assert abs(motion[q - clock]).max() < 1e-14
+    with pytest.raises(ValueError, match="t moves and is no parameter"):
+        propagate(VectorField([q * bare], [q]), (0, 1), [1.0], parameters={"t": 2})
+
+
+def test_a_variable_without_assumptions_may_have_its_name():
+    bare = sp.Symbol("t")
+    assert abs(propagate(VectorField([-bare], [bare]), (0, 1), [1.0]).final[0] - np.exp(-1)) < 1e-15
+    turned = PoissonSystem(q**2 / 2 + bare**2 / 2, [q, bare], [[0, 1], [-1, 0]])
+    assert abs(propagate(turned, (0, 1), [1.0, 0.0]).final - [np.cos(1), -np.sin(1)]).max() < 1e-15
+    met = propagate(
+        VectorField([-bare], [bare]), (0, 1), [1.0], events=[Event(bare - sp.Rational(1, 2))]
+    ).events
+    assert abs(met[0].t - np.log(2)) < 1e-14
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from canon import RK4, Hamiltonian, Splitting, Taylor, coordinates, parameters
+from canon.mechanics import field_of_function
 from canon.scene import find
 from canon.study.cases.case import Case
 from canon.study.cases.study import Study, read_study
@@ -132,6 +133,34 @@ def test_hamiltonians_and_scenes_from_python():
         span=10.0,
     )
     assert [case.system_name for case in scenes.cases] == ["simple-pendulum", "free"]
+
+
+@pytest.mark.parametrize(
+    ("axes", "message"),
+    [
+        ({"methods": ["rk4"]}, "unknown key 'methods'; is method meant?"),
+        ({"method": "rk4", "t_span": (0, 9)}, r"unknown key 't_span'; is span \(a duration\) meant?"),
+        ({"method": "rk4", "y0": [[1.0, 0.0]]}, "unknown key 'y0'; is start meant?"),
+        ({"method": "rk4", "stride": 2}, "unknown key 'stride'; there are system, start"),
+        (
+            {"method": "rk4", "start": [1.0, 0.0]},
+            r"start = 1.0: a start is a name or a list .* \[\[1.0, 0.0\]\]",
+        ),
+    ],
+)
+def test_the_words_of_other_functions_are_told(axes, message):
+    with pytest.raises(StudyError, match=message):
+        Study.of(**{"system": "kepler", "step": 0.1, "span": 9.0} | axes)
+
+
+def test_a_function_is_told_how_it_becomes_a_vector_field():
+    def swing(t, y):
+        return [y[1], -y[0]]
+
+    how = {"start": [[1.0, 0.0]], "method": "taylor", "span": 9.0, "observables": {"size": "y_0**2 + y_1**2"}}
+    with pytest.raises(StudyError, match=r"give canon.mechanics.field_of_function\(f, n\)"):
+        Study.of(system=swing, **how)
+    assert len(Study.of(system=field_of_function(swing, 2), **how).cases) == 1
 
 
 def test_shares_are_the_study():

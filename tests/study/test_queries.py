@@ -6,6 +6,7 @@ import csv
 import sqlite3
 from contextlib import closing
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -64,6 +65,24 @@ def test_results_are_found(path, wanted, count):
     found = results_of(path).where(**wanted)
     assert len(found) == count
     assert all(row in results_of(path).rows for row in found)
+
+
+def test_a_start_is_asked_for_as_it_was_given(tmp_path):
+    numbers = [[0.0, 0.1, 0.3, 0.0], [0.0, 0.2, 0.3, 0.0]]
+    study = Study.of(
+        system="henon-heiles", start=[*numbers, "chaotic"], method="verlet", step=0.1, span=30.0, samples=256
+    )
+    run_study(study, tmp_path / "starts.sqlite")
+    results = results_of(tmp_path / "starts.sqlite")
+    first, second = (tuple(each) for each in numbers)
+    for one in (numbers[0], first, np.array(first), [first], {first}, [numbers[0], [9.0, 9.0, 9.0, 9.0]]):
+        assert [row.case.start for row in results.where(start=one)] == [first]
+    assert [row.case.start for row in results.where(start=numbers)] == [first, second]
+    assert [row.case.start for row in results.where(start=[first, "chaotic"])] == [first, "chaotic"]
+    assert [row.case.start for row in results.where(start="chaotic")] == ["chaotic"]
+    assert [*results.where(start="chaotic")[0].case.state] != list(first)
+    for none in ([0.0, 0.1, 0.3, 0.1], "regular", [], 0.1):
+        assert len(results.where(start=none)) == 0
 
 
 def test_what_is_found_is_what_a_loop_finds(path):

@@ -75,7 +75,9 @@ def frequency_analysis(
     Parameters
     ----------
     t
-        Times, evenly spaced, shape (times,); of a motion back in time they fall.
+        Times, evenly spaced to 10⁻⁹ of their distance, shape (times,); of a motion back in time they fall. Those of
+        ``propagate`` are where Taylor() or DOP853() carried the motion, and with fixed steps where ``samples`` divides
+        the number of steps: give ``span = samples * k * step`` with a whole k.
     values
         The signal, complex such as q − i p, in which a motion q = cos ωt has the one line ω, or real, shape (times,).
         Lines above π over the distance of two times are taken for lower ones.

@@ -129,8 +129,10 @@ def lyapunov_spectrum(
     Parameters
     ----------
     system
-        A Hamiltonian, a map, a scene that has one, a Poisson system, or a vector field of an even number of variables;
-        a damped or driven ``Lagrangian`` is not taken, write its equations as a vector field.
+        A Hamiltonian, a map, a scene that has one, a ``Lagrangian`` without forces and constraints in which time does
+        not occur, a Poisson system, or a vector field of an even number of variables. The equations of a damped or
+        driven system are written as a vector field, ``VectorField([v, force/m], [q, v])``; an odd number of variables
+        is made even by one that rests, ``VectorField([…, 0], [x, y, z, rest])``, whose exponent is 0.
     t_span, y0, method, step, tolerance, precision, parameters, progress
         As :func:`canon.propagate` takes them. Many orbits, y0 of shape (2n, orbits) or parameters of shape (orbits,),
         run side by side; one that leaves the finite numbers gets the verdict ``LEFT`` and exponents NaN.

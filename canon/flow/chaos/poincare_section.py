@@ -137,7 +137,7 @@ def poincare_section(
     parameters: Mapping[Symbol | str, Any] | None = None,
     progress: Callable[[float], None] | bool | None = None,
 ) -> PoincareSection:
-    """Return where orbits pass a surface g(q, p, t) = 0.
+    """Return where orbits pass a surface g = 0 in the space of the state and the time.
 
     With splittings, RK4 and Gauss the steps of many orbits go side by side in SIMD lanes and on all processors, and
     each place is found by a partial step of the same method from the step's beginning, by Newton's method in a
@@ -146,9 +146,11 @@ def poincare_section(
     Parameters
     ----------
     system, t_span, y0, method, step, tolerance, precision, parameters, progress
-        As :func:`canon.propagate` takes them; many orbits are a start of shape (2n, orbits).
+        As :func:`canon.propagate` takes them, any system but one with unilateral constraints; many orbits are a start
+        of shape (2n, orbits).
     surface
-        g, or the name of a variable: ``"x"`` for x = 0. A start on the surface is no passing.
+        g, a function of the state and the time such as g(q, p, t) of a Hamiltonian (see :class:`canon.Event`), or the
+        name of a variable: ``"x"`` for x = 0. A start on the surface is no passing.
     direction
         1: passings at which g rises, −1: at which it falls, 0: both.
     points

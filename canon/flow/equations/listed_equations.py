@@ -11,6 +11,7 @@ from canon.expression.graph.graph import Graph
 from canon.expression.symbols.symbol import time
 from canon.expression.symbols.user_input import given_expression, given_symbols
 from canon.flow.equations.first_order_motion import FirstOrderMotion, from_any_start
+from canon.mechanics.algebra.dynamicsymbols import in_own_time
 from canon.mechanics.algebra.substitution import exchanged
 from canon.mechanics.hamilton.vector_field import VectorField, check_moves_in_time
 
@@ -39,7 +40,8 @@ def field_motion(field: VectorField, t: Symbol = time) -> FirstOrderMotion:
     """
     check_moves_in_time(field, t)
     graph = Graph()
-    rates = tuple(graph.from_sympy(given_expression(f, "the vector field")) for f in field.components)
+    given = [given_expression(f, "the vector field") for f in field.components]
+    rates = tuple(graph.from_sympy(in_own_time(f, field.x, t)) for f in given)
     return FirstOrderMotion("vector field", graph, field.x, (), "x", t, rates, holds_from=from_any_start)
 
 

@@ -29,6 +29,7 @@ from canon.kernel.program.hamilton_equations import (
     exact_numbers,
 )
 from canon.kernel.program.series_gaps import may_have_gaps
+from canon.mechanics.algebra.dynamicsymbols import in_own_time
 from canon.mechanics.hamilton.vector_field import VectorField, check_moves_in_time
 
 if TYPE_CHECKING:
@@ -141,7 +142,8 @@ def vector_field_system(
     if isinstance(motion, VectorField):
         check_moves_in_time(motion, time)
         empty = VectorFieldSystem(graph, motion.x, time, numbers, ())
-        rates = tuple(empty.node(f, "the vector field") for f in motion.components)
+        given = [in_own_time(f, motion.x) for f in motion.components]
+        rates = tuple(empty.node(f, "the vector field") for f in given)
         return VectorFieldSystem(graph, motion.x, time, numbers, rates)
     x, n = (*motion.q, *motion.p), len(motion.q)
     empty = VectorFieldSystem(graph, x, motion.t, numbers, ())

@@ -18,7 +18,10 @@ class Taylor:
     Parameters
     ----------
     tolerance
-        Relative tolerance of a step; the rounding unit 2⁻⁵² where not given.
+        What a step may miss, in parts of the largest number in the state at that time, coordinates and momenta (or
+        velocities) alike, in whatever units; the rounding unit 2⁻⁵² where not given. A variable that is small beside
+        the largest may have as many digits less: take units in which they are of one size where that matters, or
+        :class:`DOP853`.
 
     Examples
     --------
@@ -62,9 +65,9 @@ class DOP853:
     Parameters
     ----------
     tolerance
-        What a step may miss: of each component of the state in parts of itself, and beside that in parts of the largest
-        number that the coordinates, and likewise the momenta, have had so far, but of no more than 1. A state of small
-        numbers is so followed as exactly as one of large ones.
+        What a step may miss of a component y is tolerance · (abs(y) + s). For a coordinate, s is the largest size that
+        any coordinate has had so far, for a momentum or velocity likewise, but never more than 1. A state of small
+        numbers is so followed as exactly as one of large ones, and no less exactly than SciPy's rtol = atol do.
     """
 
     tolerance: float = 1e-12

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import sympy as sp
 
 from canon.expression.symbols.user_input import given_expression
+from canon.mechanics.algebra.dynamicsymbols import in_own_time
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,7 +26,7 @@ Action = Literal["record", "stop", "bounce"]
 
 @dataclass(frozen=True)
 class Event:
-    """Event of a motion: what is to happen where a function g(q, p, t) crosses zero.
+    """Event of a motion: what is to happen where a function g of the state and the time crosses zero.
 
     A crossing is a change of sign through zero, not by a jump or over a pole, as tan θ has. A motion that touches g = 0
     and turns back on the same side crosses nothing, nor does one that starts at g = 0, at rest or not, cross there.
@@ -43,7 +44,10 @@ class Event:
     Parameters
     ----------
     function
-        g(q, p, t), with the parameters of H.
+        g, an expression in the variables of the motion, as :func:`canon.propagate` lists them for each system, the time
+        and the parameters: g(q, p, t) of a Hamiltonian, g(q, q̇, t) of a Lagrangian, where momenta ``x.momentum``,
+        multipliers and whatever else ``motion[…]`` knows by name may stand too. The variables of a function f(t, y) are
+        ``sympy.symbols("y_0 y_1 …", real=True)``.
     direction
         1: only where g rises, −1: only where it falls, in the order in which the motion passes; 0: both.
     action
@@ -96,7 +100,7 @@ class Event:
 
 @dataclass(frozen=True)
 class Crossing:
-    """Crossing of an event: the time and the state at which g(q, p, t) crossed zero.
+    """Crossing of an event: the time and the state at which g crossed zero.
 
     Parameters
     ----------
@@ -105,7 +109,7 @@ class Crossing:
     t
         When.
     y
-        The state (q, p) there, before any change, shape (2n,).
+        The state there, (q, p) of a Hamiltonian, before any change, shape (2n,).
     rising
         Whether g rose through zero in the order in which the motion passes.
     after
@@ -154,7 +158,8 @@ def prepared_events(system: HamiltonEquations, events: Sequence[Event]) -> tuple
 
 def _prepared(system: HamiltonEquations, event: Event) -> PreparedEvent:
     graph, state = system.graph, (*system.q, *system.p)
-    value = system.node(sp.sympify(event.function, strict=True), f"the event {event}")
+    function = in_own_time(sp.sympify(event.function, strict=True), state, system.t)
+    value = system.node(function, f"the event {event}")
     if graph.is_constant(value):
         raise ValueError(f"the event {event} does not depend on the motion")
     slopes = graph.gradient(value, (*state, system.t))

@@ -134,10 +134,15 @@ def deviation_task(run: DeviationRun) -> Task:
     if moving is not None and (moving.residuals or moving.work is not None or task.system.varying):
         raise ValueError(
             "deviations here are those of a Hamiltonian, or of a vector field whose variables are free: make a "
-            "Hamiltonian of the system, hamiltonian(L), in coordinates that keep its constraints"
+            "Hamiltonian of the system, hamiltonian(L), in coordinates that keep its constraints; of one with forces "
+            "write the equations of first order, VectorField([v, force/m], [q, v])"
         )
     if task.system.spare and task.system.lie_poisson is None:
-        raise ValueError("an odd number of variables: deviations here are those of an even one, as of (q, p)")
+        raise ValueError(
+            "an odd number of variables: deviations here are those of an even one, as of (q, p); to a vector field add "
+            "one that rests, VectorField([…, 0], [x, y, z, rest]), whose exponent is 0, and a rotating body goes by "
+            "LiePoissonSplitting()"
+        )
     if task.method.family not in _CARRIED:
         raise ValueError(
             f"{task.method} carries no deviations here: take a splitting of T + V, Splitting('kahan-li-8'), Gauss(6) "

@@ -114,9 +114,23 @@ def with_numbers(
     others = graph.symbols(general) - set(variables)
     unknown = sorted(symbol.name for symbol in others if symbol.name not in parameters)
     if unknown:
-        raise KeyError(f"{what} holds {', '.join(unknown)}: give each a number, parameters={{symbol: value}}")
+        raise KeyError(f"{what} holds {', '.join(unknown)}: {_advice(unknown, variables)}")
     known = {graph.symbol(symbol): graph.number(parameters[symbol.name]) for symbol in others}
     return graph.substitute([general], known)[0] if known else general
+
+
+def _advice(unknown: Sequence[str], variables: Sequence[Symbol]) -> str:
+    """Return what to do about symbols without a number: some have a variable's name, or are its velocity."""
+    moving = {symbol.name for symbol in variables}
+    if twins := [name for name in unknown if name in moving]:
+        return (
+            f"another symbol than the variable {twins[0]}, for SymPy tells symbols apart by their assumptions; take "
+            f"the variable's own, which is sympy.Symbol({twins[0]!r}, real=True) where it was not made by you"
+        )
+    if any(name.removesuffix("_dot") in moving for name in unknown if name.endswith("_dot")):
+        known = ", ".join(str(symbol) for symbol in variables)
+        return f"velocities are no variables here, write it in {known}"
+    return "give each a number, parameters={symbol: value}"
 
 
 def exact_value(graph: Graph, node: int) -> Fraction:

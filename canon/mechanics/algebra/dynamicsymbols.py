@@ -21,6 +21,7 @@ __all__ = [
     "check_none_reads_as_the_time",
     "coordinate",
     "coordinate_symbols",
+    "in_own_time",
     "needs_plain",
     "plain",
     "plain_all",
@@ -91,6 +92,21 @@ def needs_plain(symbols: Collection[Any], t: Symbol = time) -> bool:
     """Tell whether SymPy's own time, ``dynamicsymbols._t``, is among symbols where another one is meant."""
     bare = Symbol(t.name)
     return bare != t and bare in symbols
+
+
+def in_own_time(f: Expr, variables: Collection[Symbol], t: Symbol = time) -> Expr:
+    """Return a function with the time in place of a symbol without assumptions of its name, which is no variable.
+
+    Examples
+    --------
+    >>> bare = Symbol("t")
+    >>> in_own_time(2 * bare, []) == 2 * time, in_own_time(2 * bare, [bare]) == 2 * bare
+    (True, True)
+    """
+    bare = Symbol(t.name)
+    if bare in variables or not needs_plain(f.free_symbols, t):
+        return f
+    return exchanged(f, {bare: t})
 
 
 def check_none_is_the_time(variables: Sequence[Symbol], call: str, t: Symbol) -> None:

@@ -20,7 +20,7 @@ from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import time
 from canon.expression.symbols.user_input import counted, given_expression, given_symbols
 from canon.mechanics.algebra.all_vanish import all_vanish, having_values
-from canon.mechanics.algebra.dynamicsymbols import check_none_is_the_time
+from canon.mechanics.algebra.dynamicsymbols import check_none_is_the_time, in_own_time
 from canon.mechanics.algebra.substitution import entry
 from canon.proof.continuity.turns_of_angles import continuity_but_for_turns
 from canon.proof.domain.domain import Domain, as_domain
@@ -78,8 +78,8 @@ class PoissonSystem:
         structure: sp.MatrixBase | Sequence[Sequence[Expr]],
         t: Symbol = time,
     ) -> None:
-        object.__setattr__(self, "H", given_expression(H, "H"))
         object.__setattr__(self, "x", given_symbols(x, "x"))
+        object.__setattr__(self, "H", in_own_time(given_expression(H, "H"), self.x, t))
         object.__setattr__(self, "structure", sp.ImmutableDenseMatrix(structure))
         object.__setattr__(self, "t", t)
         check_none_is_the_time(self.x, "PoissonSystem(H, x, structure", t)

@@ -40,6 +40,15 @@ class UnilateralLagrangian:
         Newton's coefficient 0 ≤ e ≤ 1 of impacts, a number or an expression in the parameters, one for all contacts or
         one for each; 0 where what meets stays in contact. Where not given a motion ends at its first impact.
 
+    Notes
+    -----
+    A start with f = 0 and ḟ = 0 is in contact where the force presses (λ > 0), whatever e; one with f = 0 and ḟ > 0 is
+    leaving, and with ḟ < 0 it is refused, as one with f < 0 is. After an impact with e = 0 the contact is closed, and
+    ``motion["lambda_1"]`` is the force of the first one, 0 while it is open; it opens again where the force would
+    pull. Impacts with 0 < e < 1 that follow each other ever faster end in an error: a body comes to rest on a wall only
+    by e = 0. ``motion.regimes`` are stretches of time, with ``begin``, ``end`` and ``closed``, the numbers of the
+    contacts that were closed, counted from 1 in the order in which they are given.
+
     Raises
     ------
     TypeError

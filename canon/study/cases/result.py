@@ -12,6 +12,8 @@ from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
+import numpy as np
+
 from canon.flow.method.method_text import method_of
 from canon.frozen_mapping import FrozenMapping
 from canon.study.cases.case import Case, case_in, part_count
@@ -50,7 +52,7 @@ class Result:
     key
         Its key.
     case
-        Its inputs.
+        Its inputs: ``case.start`` is the start as it was given, a name or numbers, ``case.state`` its numbers.
     state
         Whether it finished, failed, or is pending.
     numbers
@@ -131,10 +133,12 @@ class Results(Sequence[Result]):
         ----------
         **wanted
             What is asked by name: ``system``, ``tag``, ``start``, ``method``, ``step``, ``tolerance``, ``precision``,
-            ``span``, ``samples``, ``state`` (``"finished"``, ``"failed"``, ``"pending"``), a parameter, a number of the
-            outcome such as ``verdict`` or ``bound``, ``seconds``, and what else a :class:`canon.study.Result` has. A
-            value is asked for as it is, a list or set means any of its values, a function tells of a value whether it
-            is wanted, and a class of methods all its methods. Cases that have no such value are left out.
+            ``span``, ``samples``, ``state`` (``"finished"``, ``"failed"``, ``"pending"``; the numbers of a start are
+            ``start``), a parameter, a number of the outcome such as ``verdict`` (:class:`canon.study.Growth`, or its
+            word, ``"bounded"``) or ``bound``, ``seconds``, and what else a :class:`canon.study.Result` has. A value is
+            asked for as it is, a list or set means any of its values, a function tells of a value whether it is wanted,
+            and a class of methods all its methods. A start is asked for as it was given, a name or its numbers, and a
+            list of numbers is one start. Cases that have no such value are left out.
 
         Raises
         ------
@@ -230,12 +234,23 @@ class Results(Sequence[Result]):
 
 def _asked(name: str, given: Any) -> tuple[Any, ...]:
     """Return what is asked for as alternatives."""
+    if name == "start":
+        return _starts(given)
     each = tuple(given) if isinstance(given, list | set | frozenset) else (given,)
     if name == "method":
         return tuple(method_of(one) if isinstance(one, str) else one for one in each)
     if name == "system":
         return tuple(getattr(one, "name", one) for one in each)
     return each
+
+
+def _starts(given: Any) -> tuple[Any, ...]:
+    """Return the starts that are asked for: names, or numbers as cases have them; a list of numbers is one start."""
+    if isinstance(given, np.ndarray):
+        given = given.tolist()
+    if isinstance(given, list | set | frozenset) and not all(isinstance(x, int | float) for x in given):
+        return tuple(tuple(x) if isinstance(x, list | np.ndarray) else x for x in given)
+    return (tuple(given) if isinstance(given, list) else given,)
 
 
 def _values(row: Result, name: str) -> tuple[Any, ...]:

@@ -95,7 +95,7 @@ def run_study(
 
     Returns
     -------
-    Status
+    StudyStatus
         How many cases of the whole file finished, failed, and are pending.
 
     Raises

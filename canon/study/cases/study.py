@@ -17,6 +17,7 @@ from canon.flow.method.method_text import method_from, method_of
 from canon.flow.system.recognised_system import recognised
 from canon.flow.system_request import is_hamiltonian
 from canon.given_file import bytes_of, tables_of
+from canon.mechanics.traced.rates_function import is_rates_function
 from canon.scene import Scene, find
 from canon.study.cases.case import Case, key_of
 from canon.study.cases.case_observables import followed, observables_from
@@ -54,6 +55,14 @@ LONGEST_REASON = 1_000
 
 LENGTHS = ("periods", "span", "samples", "parts", "parameters", "observables", "keep", "tags")
 
+_KEYS = ", ".join((*AXES, *LENGTHS))
+
+_ELSEWHERE = {
+    "methods": "method", "systems": "system", "steps": "step", "tolerances": "tolerance", "starts": "start",
+    "y0": "start", "state": "start", "t_span": "span (a duration)", "tag": "tags",
+}  # fmt: skip
+"""What other functions of canon call these keys."""
+
 
 @dataclass(frozen=True)
 class Study:
@@ -86,12 +95,17 @@ class Study:
         Parameters
         ----------
         **axes
-            ``system`` (a scene or its name, a Hamiltonian, or whatever else :func:`canon.propagate` takes; with a name
-            and starts a :class:`canon.study.motion.hamiltonian_text.Formula` or
+            Each by the name it has in a study file, in the singular where the functions that take several at once,
+            ``drift_study``, ``choose`` and ``work_precision``, say ``methods``, and a duration, ``span``, where
+            ``propagate`` has both ends of one, ``t_span``:
+            ``system`` (a scene or its name, a Hamiltonian, or whatever else :func:`canon.propagate` takes that a file
+            can hold: no unilateral constraints and maps, a function f(t, y) of n variables as
+            ``canon.mechanics.field_of_function(f, n)``; with a name and starts a
+            :class:`canon.study.motion.hamiltonian_text.Formula` or
             :class:`canon.study.motion.system_text.SystemText`),
             ``start``, ``method``, ``step`` or ``steps_per_period``, ``tolerance``, ``precision``: one value or a list
-            of values (a state is a list in that list; steps are for methods of fixed step, tolerances for
-            the others); ``parameters``: a value or a list of values each; ``periods`` or ``span``,
+            of values (a state is a list in that list, ``start=[[1.0, 0.0]]``; steps are for methods of fixed step,
+            tolerances for the others); ``parameters``: a value or a list of values each; ``periods`` or ``span``,
             ``samples`` and ``parts`` hold for all cases, and so do the ``observables`` to judge beside the energy:
             ``"momenta"``, ``"integrals"``, a constant by name, ``{name: formula}``, or a list of these; ``keep`` says
             what is kept beside the numbers: ``"motion"``, ``"exponent"``, ``"chaos"``, ``{"section": formula}``, or a
@@ -158,9 +172,9 @@ def read_study(path: str | Path) -> Study:
 def _cases(table: Mapping[str, Any], where: str, own: Mapping[str, Formula | SystemText]) -> Iterator[Case]:
     unknown = sorted(set(table) - {*AXES, *LENGTHS})
     if unknown:
-        raise StudyError(
-            f"{where}: unknown key {str(unknown[0])[:60]!r}; there are {', '.join((*AXES, *LENGTHS))}"
-        )
+        name = str(unknown[0])[:60]
+        meant = f"is {_ELSEWHERE[name]} meant?" if name in _ELSEWHERE else f"there are {_KEYS}"
+        raise StudyError(f"{where}: unknown key {name!r}; {meant}")
     for name in ("system", "method"):
         if name not in table:
             raise StudyError(
@@ -226,9 +240,11 @@ def _symbols(given: Any) -> Iterable[Any]:
     try:
         return recognised(given).parameters
     except TypeError:
+        if is_rates_function(given):
+            raise  # the message says how it becomes a vector field
         raise TypeError(
             f"system = {reprlib.repr(given)}: give the name of a scene or of a [system.NAME] table, a Hamiltonian, or "
-            "another system that propagate takes"
+            "another system that propagate takes, but no map"
         ) from None
 
 
@@ -345,6 +361,8 @@ def _text(name: str, value: Any) -> str | None:
 def _start(given: Any) -> str | tuple[float, ...] | None:
     if isinstance(given, list | tuple):
         return tuple(_number("a start's number", x) for x in given)
+    if isinstance(given, int | float):
+        raise TypeError(f"start = {given}: a start is a name or a list of numbers in a list, [[1.0, 0.0]]")
     return _text("start", given)
 
 

@@ -126,8 +126,10 @@ def drift(
     Parameters
     ----------
     t
-        A motion that :func:`canon.flow.propagation.propagate` returned; or times, strictly increasing, shape (times,),
-        evenly spread (jitter welcome: samples in step with an oscillation see it as a slow one).
+        A motion that :func:`canon.flow.propagation.propagate` returned, with at least 256 states
+        (it keeps 1001 where nothing else is asked for, studies about 16 a period); or as many times, strictly
+        increasing, shape (times,), evenly spread (jitter welcome: samples in step with an oscillation see it as a slow
+        one).
     error
         Error with its sign, such as (E(t) − E₀)/abs(E₀), shape (times,); a motion brings its own.
     observable
@@ -147,8 +149,10 @@ def drift(
     Raises
     ------
     ValueError
-        Where the series is too short, not in order of time, or holds NaN or infinity: a failed run is
-        never data. Where H of a motion depends on t or events have changed it, so that its change is no error.
+        Where the series is shorter than 256 samples, not in order of time, or holds NaN or infinity: a failed run is
+        never data. Where a Hamiltonian depends on t (:func:`canon.drift_study` follows the energy less the work done
+        then, as ``drift`` does of the motion of a Lagrangian), or events have changed the energy, so that its change is
+        no error.
 
     Examples
     --------

@@ -201,7 +201,7 @@ def choose(
         forces and constraints, whose energy is then that less the work of the forces; a vector field and SymPy's
         ``KanesMethod``, of which no energy is known, with ``observable="position"`` or an ``integral``.
     span
-        Duration, in units of time.
+        Duration, in units of time (:func:`canon.propagate` takes both ends, ``t_span``).
     y0
         The starting state, or a number for each variable; of a scene also the name of a start, its default one where
         not given.
