@@ -14,13 +14,15 @@ from canon.expression.symbols.user_input import given_expression, given_kind
 from canon.mechanics.algebra.substitution import exchanged
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Mapping, Sequence
 
 __all__ = [
+    "check_no_namesake",
     "check_none_is_the_time",
     "check_none_reads_as_the_time",
     "coordinate",
     "coordinate_symbols",
+    "in_own_symbols",
     "in_own_time",
     "needs_plain",
     "plain",
@@ -88,10 +90,87 @@ def plain_places(
     return {coordinate(s): plain(place, (*old, *new), t) for s, place in places.items()}
 
 
-def needs_plain(symbols: Collection[Any], t: Symbol = time) -> bool:
-    """Tell whether SymPy's own time, ``dynamicsymbols._t``, is among symbols where another one is meant."""
+def needs_plain(symbols: Collection[Any], named: Mapping[str, Symbol]) -> bool:
+    """Tell whether a symbol has the name of a variable or of the time, and is another one.
+
+    SymPy's own time, ``dynamicsymbols._t``, is such a one. ``named`` has the symbols that are meant by their names.
+    """
+    return any(
+        s not in (named.get(s.name, s),) for s in symbols
+    )  # asks for identity first: most are the same object
+
+
+def check_no_namesake(
+    f: Expr, symbols: Iterable[Symbol], named: Mapping[str, Symbol], variables: Sequence[Symbol], t: Symbol
+) -> None:
+    """Refuse a function that holds another symbol of a variable's name: it would read as the variable and be constant.
+
+    Parameters
+    ----------
+    symbols
+        Those of the function, and others that do not stand free in it, as may be.
+    named
+        The variables by name, so that thousands of functions of thousands of variables need one such mapping.
+    t
+        The time, which may have the name of a variable.
+
+    Examples
+    --------
+    >>> x, other = sp.symbols("x", real=True), sp.symbols("x")
+    >>> check_no_namesake(x + other, [x, other], {"x": x}, [x], time)
+    Traceback (most recent call last):
+        ...
+    ValueError: x is another symbol than the variable x, for SymPy tells symbols apart by their assumptions and cla...
+    """
+    for s in symbols:
+        own = named.get(s.name)
+        if own is None or s in (own, t) or isinstance(s, sp.Dummy):
+            continue
+        if s not in variables and s in f.free_symbols:
+            raise ValueError(
+                f"{s} is another symbol than the variable {own}, for SymPy tells symbols apart by their assumptions "
+                "and classes: write the variable itself, or give the other one another name"
+            )
+
+
+def _check_no_other_time(f: Expr, symbols: Iterable[Symbol], named: Mapping[str, Symbol], t: Symbol) -> None:
+    """Refuse another symbol of the time's name, which has assumptions and so is not known to be meant as the time."""
+    for s in symbols:
+        if s.name != t.name or s.name in named or s in (t, Symbol(t.name)) or isinstance(s, sp.Dummy):
+            continue
+        if s in f.free_symbols:
+            raise ValueError(
+                f"{s} is another symbol than the time {t}, for SymPy tells symbols apart by their assumptions: write "
+                f"canon.time, or Symbol({t.name!r}), or give yours as the time, t={s}; a parameter needs another name"
+            )
+
+
+def in_own_symbols(
+    functions: Iterable[Expr], variables: Sequence[Symbol], t: Symbol = time
+) -> tuple[Expr, ...]:
+    """Return functions with the time in place of a symbol without assumptions of its name, which is no variable.
+
+    Raises
+    ------
+    ValueError
+        Where another symbol has the name of a variable or of the time.
+
+    Examples
+    --------
+    >>> bare, x = Symbol("t"), Symbol("x", real=True)
+    >>> in_own_symbols([2 * bare * x], [x]) == (2 * time * x,)
+    True
+    """
+    named = {s.name: s for s in variables}
+    return tuple(_in_own_symbols(f, named, variables, t) for f in functions)
+
+
+def _in_own_symbols(f: Expr, named: Mapping[str, Symbol], variables: Sequence[Symbol], t: Symbol) -> Expr:
+    symbols: list[Symbol] = [s for s in f.free_symbols if isinstance(s, Symbol)]
+    check_no_namesake(f, symbols, named, variables, t)
+    _check_no_other_time(f, symbols, named, t)
     bare = Symbol(t.name)
-    return bare != t and bare in symbols
+    return exchanged(f, {bare: t}) if bare in symbols and bare != t and bare not in variables else f
 
 
 def in_own_time(f: Expr, variables: Collection[Symbol], t: Symbol = time) -> Expr:
@@ -104,9 +183,7 @@ def in_own_time(f: Expr, variables: Collection[Symbol], t: Symbol = time) -> Exp
     (True, True)
     """
     bare = Symbol(t.name)
-    if bare in variables or not needs_plain(f.free_symbols, t):
-        return f
-    return exchanged(f, {bare: t})
+    return f if bare in variables or bare not in f.free_symbols else exchanged(f, {bare: t})
 
 
 def check_none_is_the_time(variables: Sequence[Symbol], call: str, t: Symbol) -> None:
@@ -155,6 +232,11 @@ def plain(f: Any, q: Sequence[Symbol], t: Symbol = time, *, keep_sums: bool = Fa
     (``theta_dot``) become the rates, and a symbol without assumptions named as the time, which ``dynamicsymbols._t``
     is, becomes the time. Sums over rows are written out where they are not to be kept.
 
+    Raises
+    ------
+    ValueError
+        Where another symbol has the name of a coordinate or of the time.
+
     Examples
     --------
     >>> from canon import coordinates
@@ -178,5 +260,8 @@ def plain(f: Any, q: Sequence[Symbol], t: Symbol = time, *, keep_sums: bool = Fa
         clock: Any = g.args[0]
         clocks[clock] = t
         expression = without_dynamicsymbols(expression, {g: s}, clock)
-    exact = {s: rate for s in expression.atoms(Symbol) if (rate := _rate_named(s.name, named)) is not None}
+    symbols: set[Symbol] = expression.atoms(Symbol)
+    check_no_namesake(expression, symbols, named, q, t)
+    _check_no_other_time(expression, symbols.difference(clocks), named, t)
+    exact = {s: rate for s in symbols if (rate := _rate_named(s.name, named)) is not None}
     return exchanged(expression, {Symbol(t.name): t, **clocks, **exact})

@@ -15,9 +15,12 @@ from canon.expression.symbols.user_input import given_expression
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from sympy.logic.boolalg import Boolean
+
 __all__ = [
     "MOST_TERMS",
     "as_tuple",
+    "carried",
     "entry",
     "exchanged",
     "shortened",
@@ -57,6 +60,20 @@ def substitute(f: Expr, values: Mapping[sp.Symbol, Expr]) -> Expr:
 def exchanged(f: Expr, values: Mapping[Any, Expr]) -> Expr:
     """Return f with whole subexpressions exchanged for others, as they stand."""
     return cast("Expr", f.xreplace(values))
+
+
+def carried(conditions: Sequence[Boolean], values: Mapping[Any, Expr]) -> tuple[Boolean, ...]:
+    """Return what conditions say where symbols have these values, without those that say nothing there.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> Q, q = symbols("Q", real=True), symbols("q", positive=True)
+    >>> carried([Q > 0, Q < 1], {Q: 2*q})
+    (2*q < 1,)
+    """
+    there = (cast("Boolean", c.xreplace(values)) for c in conditions)
+    return tuple(c for c in there if c != sp.true)
 
 
 def entry(matrix: sp.MatrixBase, i: int, j: int) -> Expr:

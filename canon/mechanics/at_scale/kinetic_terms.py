@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from canon.cached_property import cached_property
 from canon.expression.graph.pythagoras import without_squares
 from canon.expression.graph.sympy_conversion import NotModelledError
 from canon.expression.symbols.symbol import velocity
@@ -68,6 +69,10 @@ class Reader:
     _nodes: dict[Expr, int] = field(default_factory=dict)
     _slopes: dict[Expr, tuple[tuple[tuple[int, int], ...], int | None]] = field(default_factory=dict)
 
+    @cached_property
+    def _named(self) -> dict[str, Symbol]:
+        return {s.name: s for s in (*self.q, self.t)}
+
     def node(self, f: Expr) -> int:
         """Return the node of an expression."""
         found = self._nodes.get(f)
@@ -80,7 +85,7 @@ class Reader:
         return self.node(plain(f, self.q, self.t))
 
     def _read(self, f: Expr) -> int:
-        if isinstance(f, sp.Symbol) and f.name != self.t.name:
+        if isinstance(f, sp.Symbol) and not needs_plain((f,), self._named):
             return self.graph.symbol(f)
         # Functions of time are rare in places; looking for them beforehand in each of a long chain would cost.
         try:
@@ -89,7 +94,7 @@ class Reader:
             if not f.has(AppliedUndef):
                 raise
         else:
-            if not needs_plain(self.graph.symbols(node), self.t):
+            if not needs_plain(self.graph.symbols(node), self._named):
                 return node
         return self.graph.from_sympy(plain(f, self.q, self.t))
 

@@ -9,19 +9,20 @@ import sympy as sp
 from sympy import Expr
 
 from canon.cached_property import cached_property
+from canon.expression.symbols.user_input import given_expression
 from canon.mechanics.algebra.substitution import entry
 from canon.mechanics.hamilton.bracket import symplectic_unit
 from canon.mechanics.hamilton.pfaffian_form import canonical_covariant, curl, displacements
 from canon.proof.domain.verdict import Evidence, Status, Verdict
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from sympy import Symbol
 
     from canon.proof.domain.domain import Domain
 
-__all__ = ["TESTS", "PhaseSpaceMap", "Test", "disagreement", "residuals"]
+__all__ = ["TESTS", "PhaseSpaceMap", "Test", "disagreement", "given_valence", "residuals"]
 
 Test = Literal["poisson", "lagrange", "symplectic", "bilinear", "contact"]
 TESTS: tuple[Test, ...] = ("poisson", "lagrange", "symplectic", "bilinear", "contact")
@@ -170,3 +171,27 @@ def _exactness(T: PhaseSpaceMap, c: Expr) -> Iterator[tuple[str, Expr]]:
 def _names(T: PhaseSpaceMap, letters: str) -> list[str]:
     n = len(T.q)
     return [f"{letter}{'' if n == 1 else i + 1}" for letter in letters for i in range(n)]
+
+
+def given_valence(valence: Expr | int, moving: Sequence[Symbol]) -> Expr:
+    """Return the valence that was given, a constant that is not zero.
+
+    Raises
+    ------
+    ValueError
+        Where it is zero, or depends on what moves.
+
+    Examples
+    --------
+    >>> q = sp.Symbol("q")
+    >>> given_valence(2, [q])
+    2
+    >>> given_valence(q, [q])
+    Traceback (most recent call last):
+        ...
+    ValueError: the valence should be a constant other than 0, not q
+    """
+    c = given_expression(valence, "valence")
+    if c == 0 or c.has(*moving):
+        raise ValueError(f"the valence should be a constant other than 0, not {c}")
+    return c

@@ -6,7 +6,7 @@ others, on the branch of a witness point, gives the map either way and Legendre'
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
@@ -14,18 +14,18 @@ from sympy import Expr, Symbol
 from canon.expression.symbols.user_input import given_kind
 from canon.mechanics.algebra.branch_point import branch_points, far_from_principal
 from canon.mechanics.algebra.solve_on_branch import Inversion, solve_system
-from canon.mechanics.algebra.substitution import shortened, substitute
+from canon.mechanics.algebra.substitution import carried, shortened, substitute
 from canon.mechanics.canonical.generating_function import GeneratingFunction, kinds_of
 from canon.mechanics.canonical.implicit_transformation import ImplicitTransformation
 from canon.mechanics.canonical.inverse.inverse_transformation import NoClosedInverseError
+from canon.mechanics.canonical.new_hamiltonian import energy_in
 from canon.mechanics.canonical.transformation import CanonicalTransformation
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.proof.domain.domain import Domain, as_domain
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
 
-    from sympy.logic.boolalg import Boolean
 
 __all__ = [
     "generated_hamiltonian",
@@ -95,7 +95,9 @@ def implicit_map(F: GeneratingFunction) -> ImplicitTransformation:
     return ImplicitTransformation(F.q, F.p, F.new_q, F.new_p, equations, F.domain, F.t)
 
 
-def generated_hamiltonian(F: GeneratingFunction, H: Expr, domain: Domain | None = None) -> Hamiltonian:
+def generated_hamiltonian(
+    F: GeneratingFunction, H: Expr | Hamiltonian, domain: Domain | None = None
+) -> Hamiltonian:
     """Return K(Q, P, t) = H + ∂F/∂t in the new variables, with its Hamilton's equations.
 
     Parameters
@@ -103,9 +105,16 @@ def generated_hamiltonian(F: GeneratingFunction, H: Expr, domain: Domain | None 
     F
         The generating function.
     H
-        The old Hamiltonian H(q, p, t).
+        The old Hamiltonian H(q, p, t), as an expression or as a Hamiltonian in the old variables.
     domain
         Conditions that choose the branch.
+
+    Raises
+    ------
+    NoClosedInverseError
+        Where the rules could not be solved in closed form.
+    ValueError
+        Where H is about other variables, pairs or another time than F.
 
     Examples
     --------
@@ -120,9 +129,11 @@ def generated_hamiltonian(F: GeneratingFunction, H: Expr, domain: Domain | None 
     >>> vanishes(K.H - w*P, Domain((Q > 0, Q < sp.pi/2))).status.name
     'HOLDS'
     """
+    _is_generating(F)
+    energy = energy_in(H, F.q, F.p, F.t, "the generating function")
     back = generated_inverse(F, domain)
     old = dict(zip((*F.q, *F.p), back.images, strict=True))
-    return Hamiltonian(substitute(sp.sympify(H, strict=True) + F.F.diff(F.t), old), F.new_q, F.new_p, F.t)
+    return Hamiltonian(substitute(energy + F.F.diff(F.t), old), F.new_q, F.new_p, F.t)
 
 
 def of_kind(
@@ -130,7 +141,7 @@ def of_kind(
 ) -> GeneratingFunction:
     """Return the generating function of another type for the same map, by Legendre's relations.
 
-    F₂ = F₁ + Σ QP, F₃ = F₁ − Σ qp, F₄ = F₁ + Σ QP − Σ qp.
+    F₂ = F₁ + Σ QP, F₃ = F₁ − Σ qp, F₄ = F₁ + Σ QP − Σ qp. Its domain is the branch on which it was proved.
 
     Raises
     ------
@@ -152,9 +163,9 @@ def of_kind(
         total -= F.q[i] * F.p[i] * ((new in (3, 4)) - (old in (3, 4)))
     empty = GeneratingFunction(kinds, sp.S.Zero, F.q, F.p, F.new_q, F.new_p, t=F.t)
     for solved, narrowed in _expressed(F, (*empty.old, *empty.new), domain or F.domain):
-        found = GeneratingFunction(
-            kinds, shortened(substitute(total, solved)), F.q, F.p, F.new_q, F.new_p, t=F.t
-        )
+        there = Domain(carried(narrowed.conditions, solved), narrowed.box)
+        value = shortened(substitute(total, solved))
+        found = GeneratingFunction(kinds, value, F.q, F.p, F.new_q, F.new_p, there, F.t)
         if found.holds_on(_graph(F), narrowed).holds:
             return found
     raise NoClosedInverseError(
@@ -175,18 +186,13 @@ def _solved(
     n = len(F.q)
     for solved, narrowed in _expressed(F, start, domain):
         for conditions in (domain.conditions, narrowed.conditions):
-            here = Domain(_carried(conditions, solved), domain.box)
+            here = Domain(carried(conditions, solved), domain.box)
             if F.holds_on(solved, here).holds:
                 images = [solved[s] for s in target]
                 return CanonicalTransformation(start[:n], start[n:], images[:n], images[n:], here, F.t)
     raise NoClosedInverseError(
         f"the rules could not be solved for {target} in closed form; give conditions that choose a branch"
     )
-
-
-def _carried(conditions: tuple[Boolean, ...], values: Mapping[Symbol, Expr]) -> tuple[Boolean, ...]:
-    carried = (cast("Boolean", c.xreplace(values)) for c in conditions)
-    return tuple(c for c in carried if c != sp.true)
 
 
 def _expressed(
@@ -199,7 +205,7 @@ def _expressed(
     given = [s for s in wanted if s not in own]
     meaning = {s: graph[s] for s in given}
     symbols = set(own).union(F.F.atoms(Symbol))
-    domain = Domain(_carried(domain.conditions, graph), domain.box)
+    domain = Domain(carried(domain.conditions, graph), domain.box)
     for witness in sorted(branch_points(symbols, meaning, domain, 12), key=far_from_principal)[:3]:
         inversion = Inversion(witness)
         found = solve_system([(graph[s], s) for s in given], unknowns, inversion)

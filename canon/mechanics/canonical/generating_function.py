@@ -24,7 +24,7 @@ from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import time
 from canon.expression.symbols.user_input import counted, given_expression, given_kind, given_symbols
 from canon.mechanics.algebra.all_vanish import all_vanish, having_values
-from canon.mechanics.algebra.dynamicsymbols import check_none_is_the_time
+from canon.mechanics.algebra.dynamicsymbols import check_none_is_the_time, in_own_symbols
 from canon.mechanics.algebra.linear import is_regular
 from canon.mechanics.algebra.substitution import substitute
 from canon.proof.continuity.continuity import continuity
@@ -89,6 +89,12 @@ class GeneratingFunction:
     t
         The time.
 
+    Raises
+    ------
+    ValueError
+        Where the variables are not all different or one is the time; or where F depends on variables that are not its
+        type's, or holds another symbol of the name of one.
+
     Examples
     --------
     >>> from sympy import symbols, cot
@@ -123,11 +129,11 @@ class GeneratingFunction:
             object.__setattr__(self, name, given_symbols(given, name))
         n = len(self.q)
         object.__setattr__(self, "kind", kinds_of(kind, n))
-        object.__setattr__(self, "F", given_expression(F, "F"))
         object.__setattr__(self, "t", given_kind(t, Symbol, "the time", "the domain comes before it"))
         object.__setattr__(self, "domain", as_domain(domain))
         variables = (*self.q, *self.p, *self.new_q, *self.new_p)
         check_none_is_the_time(variables, "GeneratingFunction(kind, F, q, p, new_q, new_p", t)
+        object.__setattr__(self, "F", in_own_symbols([given_expression(F, "F")], variables, t)[0])
         if len(variables) != 4 * n or len(set(variables)) < 4 * n:
             raise ValueError(
                 f"a generating function of {counted(n, 'degree')} "

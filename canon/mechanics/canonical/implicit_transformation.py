@@ -15,10 +15,12 @@ from sympy import Expr, Symbol
 
 from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import time
-from canon.expression.symbols.user_input import counted, given_expression, given_kind, given_symbols
+from canon.expression.symbols.user_input import counted, given_kind, given_symbols
 from canon.mechanics.algebra.all_vanish import all_vanish, having_values
+from canon.mechanics.algebra.dynamicsymbols import in_own_symbols
 from canon.mechanics.algebra.linear import SingularMatrixError, is_regular, solve
 from canon.mechanics.algebra.substitution import as_tuple, entry, exchanged, substitute
+from canon.mechanics.canonical.canonicity_tests import given_valence
 from canon.mechanics.hamilton.bracket import symplectic_unit
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.verdict import Status, Undecided, Verdict, all_hold
@@ -45,6 +47,12 @@ class ImplicitTransformation:
     t
         The time.
 
+    Raises
+    ------
+    ValueError
+        Where there are not as many equations as variables, these are not all different, or an equation holds another
+        symbol of the name of one.
+
     Examples
     --------
     The implicit midpoint rule is canonical for every potential:
@@ -70,13 +78,15 @@ class ImplicitTransformation:
             object.__setattr__(self, name, given_symbols(getattr(self, name), name))
         object.__setattr__(self, "equations", as_tuple(self.equations))
         given_kind(self.domain, Domain, "the domain")
+        variables = (*self.q, *self.p, *self.new_q, *self.new_p)
+        object.__setattr__(self, "equations", in_own_symbols(self.equations, variables, self.t))
         n = len(self.q)
         if len(self.equations) != 2 * n:
             raise ValueError(
                 f"{counted(len(self.equations), 'equation')} for a "
                 f"map of {2 * n} variables; give as many as variables"
             )
-        if len({*self.q, *self.p, *self.new_q, *self.new_p}) != 4 * n:
+        if len({*variables}) != 4 * n:
             raise ValueError("old and new variables need different symbols, as many of each")
 
     def _repr_latex_(self) -> str:
@@ -96,17 +106,24 @@ class ImplicitTransformation:
         )
 
     def is_canonical(self, valence: Expr | int = 1, budget: float = 10.0) -> Verdict:
-        """Tell whether A J Aᵀ = c B J Bᵀ wherever the equations hold, with B regular."""
+        """Tell whether A J Aᵀ = c B J Bᵀ wherever the equations hold, with B regular.
+
+        Raises
+        ------
+        ValueError
+            Where the valence is no constant other than 0.
+        """
         J = symplectic_unit(len(self.q))
         A, B = self.old_jacobian, self.new_jacobian
-        difference = A * J * A.T - given_expression(valence, "valence") * B * J * B.T
+        c = given_valence(valence, (*self.q, *self.p, *self.new_q, *self.new_p, self.t))
+        difference = A * J * A.T - c * B * J * B.T
         size = 2 * len(self.q)
         entries = [
             (f"(A J Aᵀ − c B J Bᵀ)[{i + 1}, {j + 1}] = 0", entry(difference, i, j))
             for i in range(size)
             for j in range(i + 1, size)
         ]
-        question = f"the implicit map is canonical{'' if valence == 1 else f' with valence {valence}'}"
+        question = f"the implicit map is canonical{'' if c == 1 else f' with valence {c}'}"
 
         def verdicts() -> Iterator[Verdict]:
             yield is_regular(B, self.domain, "∂E/∂(Q, P)")

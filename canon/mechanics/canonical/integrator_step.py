@@ -90,7 +90,8 @@ def runge_kutta_step(
     Raises
     ------
     ValueError
-        Where a row is too short, or holds a coefficient of a stage that is not before it: the method is implicit then.
+        Where a row is too short, or holds a coefficient of a stage that is not before it: the method is implicit then;
+        or the weights are not as many as the rows.
 
     Examples
     --------
@@ -113,6 +114,8 @@ def runge_kutta_step(
             )
         moved = _moved(z, h, row[:before], stages)
         stages.append([substitute(f, dict(zip(z, moved, strict=True))) for f in H.vector_field])
+    if len(b) != len(stages):
+        raise ValueError(f"{counted(len(b), 'weight')} for {counted(len(stages), 'stage')}; give one each")
     new = _moved(z, h, b, stages)
     n = len(H.q)
     return CanonicalTransformation(H.q, H.p, new[:n], new[n:], t=H.t)

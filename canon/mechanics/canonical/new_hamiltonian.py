@@ -8,15 +8,18 @@ integration, and a claimed K is judged by derivatives alone.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.expression.symbols.user_input import counted, given_expression, given_kind
+from canon.expression.symbols.user_input import counted, given_expression, given_kind, given_symbols
 from canon.mechanics.algebra.all_vanish import all_vanish, having_values
+from canon.mechanics.algebra.dynamicsymbols import in_own_symbols
 from canon.mechanics.algebra.potential import potential
 from canon.mechanics.algebra.substitution import substitute
+from canon.mechanics.canonical.canonicity_tests import given_valence
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.proof.continuity.continuity import continuity
 from canon.proof.domain.domain import as_domain
@@ -28,7 +31,7 @@ if TYPE_CHECKING:
     from canon.mechanics.canonical.transformation import CanonicalTransformation
     from canon.proof.domain.domain import Domain
 
-__all__ = ["is_new_hamiltonian", "new_hamiltonian", "rate_form"]
+__all__ = ["energy_in", "is_new_hamiltonian", "new_hamiltonian", "rate_form"]
 
 
 def rate_form(transformation: CanonicalTransformation) -> tuple[Expr, ...]:
@@ -71,7 +74,8 @@ def new_hamiltonian(
     Raises
     ------
     ValueError
-        Where the map is certainly not canonical with that valence.
+        Where the map is certainly not canonical with that valence; or H is about other variables, pairs of them or
+        another time.
 
     Examples
     --------
@@ -82,7 +86,7 @@ def new_hamiltonian(
     -p*v + p**2/(2*m)
     """
     _is_map(transformation)
-    energy = _energy(H, transformation)
+    energy = energy_in(H, transformation.q, transformation.p, transformation.t)
     canonical = transformation.is_canonical(valence=given_expression(valence, "valence"))
     if canonical.fails:
         raise ValueError(f"the map is not canonical, so it has no new Hamiltonian; {canonical.feedback}")
@@ -98,15 +102,37 @@ def _is_map(transformation: CanonicalTransformation) -> None:
     )
 
 
-def _energy(H: Expr | Hamiltonian, transformation: CanonicalTransformation) -> Expr:
-    """Return the old Hamiltonian as an expression in the old variables of the map."""
+def energy_in(
+    H: Expr | Hamiltonian, q: Sequence[Symbol], p: Sequence[Symbol], t: Symbol, whose: str = "the map"
+) -> Expr:
+    """Return a Hamiltonian, given as one or as an expression, as an expression in these pairs of variables.
+
+    Raises
+    ------
+    ValueError
+        Where it is about other variables, pairs or another time than what it is given to.
+
+    Examples
+    --------
+    >>> from sympy import symbols
+    >>> x, y, t = symbols("x y t", real=True)
+    >>> energy_in(Hamiltonian(y**2/2, x, y), [x], [y], t)
+    y**2/2
+    """
     if not isinstance(H, Hamiltonian):
-        return given_expression(H, "H")
-    if {*H.q, *H.p} != {*transformation.variables}:
+        return in_own_symbols([given_expression(H, "H")], (*q, *p), t)[0]
+    if {*H.q, *H.p} != {*q, *p}:
         raise ValueError(
-            f"H is a function of {(*H.q, *H.p)} and the map one of {transformation.variables}; "
-            "give both in the same variables"
+            f"H is a function of {(*H.q, *H.p)} and {whose} one of {(*q, *p)}; give both in the same variables"
         )
+    pairs = {*zip(q, p, strict=True)}
+    if other := [(x, y) for x, y in zip(H.q, H.p, strict=True) if (x, y) not in pairs]:
+        raise ValueError(
+            f"the momentum of {other[0][0]} is {other[0][1]} in H and another one in {whose}; pair coordinates and "
+            "momenta alike in both"
+        )
+    if H.t != t and H.H.has(H.t, t):
+        raise ValueError(f"the time of H is {H.t} and that of {whose} is {t}; give both the same")
     return H.H
 
 
@@ -116,7 +142,7 @@ def is_new_hamiltonian(
     after: Expr,
     images: Sequence[Symbol],
     domain: Domain | None = None,
-    valence: Expr = sp.S.One,
+    valence: Expr | None = sp.S.One,
 ) -> Verdict:
     """Tell whether the map is canonical and takes one Hamiltonian to the other, up to a function of t alone.
 
@@ -133,7 +159,13 @@ def is_new_hamiltonian(
     domain
         Where the claim is meant; the transformation's unless given.
     valence
-        The c of M J Mᵀ = c J of the given map.
+        The c of M J Mᵀ = c J of the given map; None to find it.
+
+    Raises
+    ------
+    ValueError
+        Where the images are not as many as the variables, the valence is no constant other than 0, or a Hamiltonian
+        holds another symbol of the name of a variable.
 
     Examples
     --------
@@ -153,21 +185,26 @@ def is_new_hamiltonian(
         raise ValueError(
             f"{counted(len(images), 'symbol')} for the {2 * len(T.q)} new variables; give (*Q, *P)"
         )
-    carried = substitute(
-        given_expression(after, "the Hamiltonian after the map"), dict(zip(images, T.images, strict=True))
-    )
-    gap = carried - valence * given_expression(before, "the Hamiltonian before the map")
+    question = "the map is canonical and K is the new Hamiltonian"
+    T, images = replace(T, domain=domain), given_symbols(images, "images")
+    c = T.valence if valence is None else given_valence(valence, (*T.variables, T.t))
+    if c is None:
+        return all_hold([T.is_canonical(valence=None)], question)
+    (H,) = in_own_symbols([given_expression(before, "the Hamiltonian before the map")], T.variables, T.t)
+    (K,) = in_own_symbols([given_expression(after, "the Hamiltonian after the map")], images, T.t)
+    carried = substitute(K, dict(zip(images, T.images, strict=True)))
+    gap = carried - c * H
     claims = [
         (f"∂(K − c H)/∂{z} = ∂R/∂{z}", gap.diff(z) - r)
         for z, r in zip(T.variables, rate_form(T), strict=True)
     ]
 
     def verdicts() -> Iterator[Verdict]:
-        yield T.is_canonical(valence=valence)
+        yield T.is_canonical(valence=c)
         yield all_vanish(claims, "the new Hamiltonian is right", domain)
-        verdict = having_values(Verdict(Status.HOLDS), {"K": carried}, [given_expression(before)], domain)
+        verdict = having_values(Verdict(Status.HOLDS), {"K": carried}, [H], domain)
         yield verdict
         if verdict.holds:
             yield continuity(gap, T.variables, domain, name="K", given=T.images)
 
-    return all_hold(verdicts(), "the map is canonical and K is the new Hamiltonian")
+    return all_hold(verdicts(), question)

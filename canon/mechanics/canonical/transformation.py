@@ -19,18 +19,17 @@ from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import time
 from canon.expression.symbols.user_input import (
     counted,
-    given_expression,
     given_kind,
     given_seconds,
     given_symbols,
 )
 from canon.mechanics.algebra.all_vanish import all_vanish, having_values
-from canon.mechanics.algebra.dynamicsymbols import check_none_is_the_time
+from canon.mechanics.algebra.dynamicsymbols import check_none_is_the_time, in_own_symbols
 from canon.mechanics.algebra.jacobian import jacobian
 from canon.mechanics.algebra.linear import solve
 from canon.mechanics.algebra.potential import potential
-from canon.mechanics.algebra.substitution import as_tuple, entry, substitute
-from canon.mechanics.canonical.canonicity_tests import TESTS, Test, disagreement, residuals
+from canon.mechanics.algebra.substitution import as_tuple, carried, entry, substitute
+from canon.mechanics.canonical.canonicity_tests import TESTS, Test, disagreement, given_valence, residuals
 from canon.mechanics.canonical.repair_hint import constant_value, repair_hint
 from canon.mechanics.hamilton.bracket import antisymmetric, lagrange_matrix
 from canon.proof.domain.domain import Domain, as_domain
@@ -56,6 +55,12 @@ class CanonicalTransformation:
         Where the map is meant.
     t
         The time.
+
+    Raises
+    ------
+    ValueError
+        Where there are not as many of each, variables are not all different, one is the time, or the new variables hold
+        another symbol of the name of one.
 
     Examples
     --------
@@ -87,10 +92,10 @@ class CanonicalTransformation:
     ) -> None:
         for name, given in (("q", q), ("p", p)):
             object.__setattr__(self, name, given_symbols(given, name))
-        for name, given in (("new_q", new_q), ("new_p", new_p)):
-            object.__setattr__(self, name, as_tuple(given))
         object.__setattr__(self, "t", given_kind(t, Symbol, "the time", "the domain comes before it"))
         check_none_is_the_time((*self.q, *self.p), "CanonicalTransformation(q, p, new_q, new_p", t)
+        for name, given in (("new_q", new_q), ("new_p", new_p)):
+            object.__setattr__(self, name, in_own_symbols(as_tuple(given), (*self.q, *self.p), t))
         object.__setattr__(self, "domain", as_domain(domain))
         lengths = {len(self.q), len(self.p), len(self.new_q), len(self.new_p)}
         if len(lengths) > 1:
@@ -198,7 +203,7 @@ class CanonicalTransformation:
         """
         if by == "all":
             return disagreement({test: self.is_canonical(test, valence, budget) for test in TESTS})
-        c = self.valence if valence is None else _as_valence(valence, (*self.variables, self.t))
+        c = self.valence if valence is None else given_valence(valence, (*self.variables, self.t))
         if c is None:
             return self._without_valence(budget)
         question = f"the map is canonical{'' if c == 1 else f' with valence {c}'}"
@@ -240,7 +245,7 @@ class CanonicalTransformation:
         return Verdict(Status.UNDECIDED, question, residual=bracket, seconds=still.seconds + zero.seconds)
 
     def then(self, following: CanonicalTransformation) -> CanonicalTransformation:
-        """Return the map that applies this one first and ``following`` after it.
+        """Return the map that applies this one first and ``following`` after it, where both are meant.
 
         Examples
         --------
@@ -259,14 +264,11 @@ class CanonicalTransformation:
         here = dict(zip(following.variables, self.images, strict=True))
         if following.t != self.t:
             here[following.t] = self.t
-        return CanonicalTransformation(
-            self.q,
-            self.p,
-            [substitute(f, here) for f in following.new_q],
-            [substitute(f, here) for f in following.new_p],
-            self.domain,
-            self.t,
-        )
+        new_q, new_p = ([substitute(f, here) for f in part] for part in (following.new_q, following.new_p))
+        positive = (sp.Gt(z, 0, evaluate=False) for z in following.variables if z.is_positive)
+        there = carried((*positive, *following.domain.conditions), here)
+        domain = Domain((*self.domain.conditions, *there), self.domain.box)
+        return CanonicalTransformation(self.q, self.p, new_q, new_p, domain, self.t)
 
     def _repr_latex_(self) -> str:
         rows = [
@@ -320,6 +322,7 @@ def point_transformation(
             f"{counted(len(old), 'coordinate')}, {counted(len(momenta), 'momentum', 'momenta')}, "
             f"{counted(len(new), 'new coordinate')}; give as many of each"
         )
+    new = in_own_symbols(new, (*old, *momenta), t)
     if any(f.has(*momenta) for f in new):
         raise ValueError("the new coordinates of a point transformation depend on q and t only, not on p")
     transposed = sp.Matrix([[f.diff(x) for f in new] for x in old])
@@ -330,11 +333,3 @@ def point_transformation(
         solved = transposed.adjugate() * sp.Matrix(momenta) / (found if constant is None else constant)
     new_p = [entry(solved, i, 0) for i in range(len(old))]
     return CanonicalTransformation(old, momenta, new, new_p, domain, t)
-
-
-def _as_valence(valence: Expr | int, moving: Sequence[Symbol]) -> Expr:
-    """Return the valence, a constant that is not zero."""
-    c = given_expression(valence, "valence")
-    if c == 0 or c.has(*moving):
-        raise ValueError(f"the valence should be a constant other than 0, not {c}; valence=None finds it")
-    return c

@@ -12,7 +12,7 @@ from canon.mechanics.algebra.branch_point import branch_points
 from canon.mechanics.algebra.linear import SingularMatrixError, eliminate, is_regular, solve
 from canon.mechanics.algebra.possible_motion import where_real
 from canon.mechanics.algebra.solve_on_branch import Inversion, solve_system
-from canon.mechanics.algebra.substitution import entry, exchanged, size, substitute
+from canon.mechanics.algebra.substitution import entry, exchanged, size, substitute, symbols_of
 from canon.proof.domain.domain import Domain
 from canon.proof.kinks import vanishes_off_kinks
 from canon.proof.trees.polynomial_roots import is_binomial, low_degree_roots, polynomial_in
@@ -21,8 +21,16 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from canon.mechanics.algebra.branch_point import BranchPoint
+    from canon.mechanics.lagrange.lagrangian import Lagrangian
 
-__all__ = ["LegendreError", "eliminate_velocities", "is_dual", "legendre_residual", "where_root_is_real"]
+__all__ = [
+    "LegendreError",
+    "check_momenta",
+    "eliminate_velocities",
+    "is_dual",
+    "legendre_residual",
+    "where_root_is_real",
+]
 
 WITNESSES = 4
 """Points that show a branch."""
@@ -42,6 +50,33 @@ class LegendreError(ValueError):
     def __init__(self, message: str, null_direction: tuple[Expr, ...] | None = None) -> None:
         super().__init__(message)
         self.null_direction = null_direction
+
+
+def check_momenta(momenta: Sequence[Symbol], lagrangian: Lagrangian, call: str) -> None:
+    """Refuse momenta that are called as a symbol of the system is: what follows would read as if they were one.
+
+    Parameters
+    ----------
+    call
+        How other symbols are given, such as ``"hamiltonian(L, p=[…])"``.
+
+    Examples
+    --------
+    >>> from canon import Lagrangian, coordinates
+    >>> x = coordinates("x")
+    >>> check_momenta([x], Lagrangian(x.dot**2/2, [x]), "hamiltonian(L, p=[…])")
+    Traceback (most recent call last):
+        ...
+    ValueError: x is the name of a momentum and of another symbol in L: call that otherwise, or give symbols for ...
+    """
+    L = lagrangian
+    names = {s.name for s in (*L.q, L.t, *symbols_of(L.L, *L.forces))}
+    clash = next((p for p in momenta if p.name in names), None)
+    if clash is not None:
+        raise ValueError(
+            f"{clash} is the name of a momentum and of another symbol in L: call that otherwise, or give symbols for "
+            f"the momenta, {call}"
+        )
 
 
 def eliminate_velocities(

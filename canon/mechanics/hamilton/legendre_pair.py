@@ -9,10 +9,11 @@ from canon.expression.symbols.user_input import counted, given_kind
 from canon.mechanics.algebra.all_vanish import having_values
 from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain
 from canon.mechanics.algebra.linear import is_regular
-from canon.mechanics.algebra.substitution import substitute, symbols_of
+from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.hamilton.legendre import (
     LegendreError,
+    check_momenta,
     eliminate_velocities,
     is_dual,
     legendre_residual,
@@ -83,22 +84,11 @@ def hamiltonian(
             f"{counted(len(momenta), 'momentum', 'momenta')} for "
             f"{counted(len(lagrangian.q), 'coordinate')}; each needs one"
         )
-    _check_names(lagrangian, momenta)
+    check_momenta(momenta, lagrangian, "hamiltonian(L, p=[…])")
     H = eliminate_velocities(
         lagrangian.L, lagrangian.velocities, momenta, as_domain(domain), "L", "velocities"
     )
     return Hamiltonian(H, lagrangian.q, momenta, lagrangian.t)
-
-
-def _check_names(lagrangian: Lagrangian, momenta: Sequence[Symbol]) -> None:
-    """Refuse momenta that are called as another symbol of L is: H would read as if they were one."""
-    names = {s.name for s in symbols_of(lagrangian.L) if s not in momenta}
-    clash = next((p for p in momenta if p.name in names), None)
-    if clash is not None:
-        raise ValueError(
-            f"{clash} is the name of a momentum and of another symbol in L: call that otherwise, or give symbols for "
-            "the momenta, hamiltonian(L, p=[…])"
-        )
 
 
 def lagrangian(hamiltonian: Hamiltonian, domain: Domain | None = None) -> Lagrangian:

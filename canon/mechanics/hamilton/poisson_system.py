@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from sympy import Expr, Symbol
@@ -20,7 +20,7 @@ from canon.cached_property import cached_property
 from canon.expression.symbols.symbol import time
 from canon.expression.symbols.user_input import counted, given_expression, given_symbols
 from canon.mechanics.algebra.all_vanish import all_vanish, having_values
-from canon.mechanics.algebra.dynamicsymbols import check_none_is_the_time, in_own_time
+from canon.mechanics.algebra.dynamicsymbols import check_none_is_the_time, in_own_symbols
 from canon.mechanics.algebra.substitution import entry
 from canon.proof.continuity.turns_of_angles import continuity_but_for_turns
 from canon.proof.domain.domain import Domain, as_domain
@@ -50,7 +50,7 @@ class PoissonSystem:
     Raises
     ------
     ValueError
-        The matrix has another shape, or holds the time; or a variable is the time.
+        The matrix has another shape, or holds the time; a variable is the time; or another symbol has the name of one.
 
     Examples
     --------
@@ -79,20 +79,24 @@ class PoissonSystem:
         t: Symbol = time,
     ) -> None:
         object.__setattr__(self, "x", given_symbols(x, "x"))
-        object.__setattr__(self, "H", in_own_time(given_expression(H, "H"), self.x, t))
         object.__setattr__(self, "structure", sp.ImmutableDenseMatrix(structure))
         object.__setattr__(self, "t", t)
         check_none_is_the_time(self.x, "PoissonSystem(H, x, structure", t)
+        object.__setattr__(self, "H", self._in_own_symbols(H, "H"))
         size = len(self.x)
         if self.structure.shape != (size, size):
             rows, columns = self.structure.shape
             raise ValueError(
                 f"a matrix of {rows} × {columns} brackets for {counted(size, 'variable')}: give all {{xᵢ, xⱼ}}"
             )
-        if t in self.structure.free_symbols:
+        brackets = in_own_symbols({*self.structure.flat()}, self.x, t)
+        if any(t in f.free_symbols for f in brackets):
             raise ValueError(
                 f"the brackets of the variables hold {t}: they are functions of the variables alone"
             )
+
+    def _in_own_symbols(self, f: Any, name: str = "") -> Expr:
+        return in_own_symbols([given_expression(f, name)], self.x, self.t)[0]
 
     @property
     def brackets(self) -> tuple[Expr, ...]:
@@ -103,11 +107,14 @@ class PoissonSystem:
     @cached_property
     def vector_field(self) -> tuple[Expr, ...]:
         """The right-hand side ẋ = Π ∇H."""
-        return tuple(self.bracket(x, self.H) for x in self.x)
+        return tuple(self._bracket(x, self.H) for x in self.x)
 
     def bracket(self, f: Expr, g: Expr) -> Expr:
         """Return {f, g} = Σ ∂f/∂xᵢ Πᵢⱼ ∂g/∂xⱼ."""
-        first, second = self._slopes(given_expression(f)), self._slopes(given_expression(g))
+        return self._bracket(self._in_own_symbols(f), self._in_own_symbols(g))
+
+    def _bracket(self, f: Expr, g: Expr) -> Expr:
+        first, second = self._slopes(f), self._slopes(g)
         return sp.Add(
             *(a * entry(self.structure, i, j) * b for i, a in first.items() for j, b in second.items())
         )
@@ -117,7 +124,8 @@ class PoissonSystem:
 
     def rate(self, u: Expr) -> Expr:
         """Return du/dt = {u, H} + ∂u/∂t."""
-        return self.bracket(u, self.H) + given_expression(u).diff(self.t)
+        u = self._in_own_symbols(u)
+        return self._bracket(u, self.H) + u.diff(self.t)
 
     def is_poisson(self, domain: Domain | None = None) -> Verdict:
         """Tell whether the bracket is one: antisymmetric, and Jacobi's identity holds for all functions.
@@ -140,7 +148,7 @@ class PoissonSystem:
                 yield f"{{{x[i]}, {x[j]}}} = −{{{x[j]}, {x[i]}}}", entry(P, i, j) + entry(P, j, i)
         for i, j, k in combinations(range(size), 3):
             cyclic = ((i, j, k), (j, k, i), (k, i, j))
-            nested = sp.Add(*(self.bracket(x[a], entry(P, b, c)) for a, b, c in cyclic))
+            nested = sp.Add(*(self._bracket(x[a], entry(P, b, c)) for a, b, c in cyclic))
             yield f"Jacobi's identity of {x[i]}, {x[j]}, {x[k]}", nested
 
     def is_casimir(self, C: Expr, domain: Domain | None = None) -> Verdict:
@@ -155,12 +163,12 @@ class PoissonSystem:
 
     def _without_jumps(self, f: Expr, verdict: Verdict, domain: Domain | None) -> Verdict:
         """Return the verdict on a function that was tested by its slopes, once it is seen that it does not jump."""
-        given, everywhere = (self.H, *self.brackets), as_domain(domain)
-        verdict = having_values(verdict, {str(f): given_expression(f)}, given, domain)
+        given, everywhere, function = (self.H, *self.brackets), as_domain(domain), self._in_own_symbols(f)
+        verdict = having_values(verdict, {str(f): function}, given, domain)
         if not verdict.holds:
             return verdict
         moving = (*self.x, self.t)
-        steady = continuity_but_for_turns(given_expression(f), moving, everywhere, name=str(f), given=given)
+        steady = continuity_but_for_turns(function, moving, everywhere, name=str(f), given=given)
         return all_hold([verdict, steady], verdict.question)
 
     def _repr_latex_(self) -> str:

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.expression.symbols.user_input import counted, given_symbols
+from canon.expression.symbols.symbol import time
+from canon.expression.symbols.user_input import counted, given_expression, given_symbols
+from canon.mechanics.algebra.dynamicsymbols import check_no_namesake, in_own_symbols
 from canon.mechanics.algebra.substitution import as_tuple
 from canon.mechanics.hamilton.bracket import lie_bracket
 
@@ -28,6 +30,11 @@ class VectorField:
         The aⁱ(x).
     x
         The coordinates.
+
+    Raises
+    ------
+    ValueError
+        Where there are not as many of both, or a component holds another symbol of the name of a coordinate.
 
     Examples
     --------
@@ -52,6 +59,9 @@ class VectorField:
                 f"{counted(len(self.components), 'component')} for "
                 f"{counted(len(self.x), 'coordinate')}; give one each"
             )
+        named = {s.name: s for s in self.x}
+        for f in self.components:
+            check_no_namesake(f, f.free_symbols, named, self.x, time)
 
     def _repr_latex_(self) -> str:
         terms = [
@@ -62,6 +72,7 @@ class VectorField:
 
     def __call__(self, f: Expr) -> Expr:
         """Return X f = Σ aⁱ ∂f/∂xⁱ."""
+        f = given_expression(f, "f")
         return sp.Add(*(a * f.diff(s) for a, s in zip(self.components, self.x, strict=True)))
 
     def __add__(self, other: VectorField) -> VectorField:
@@ -99,7 +110,7 @@ def check_moves_in_time(field: VectorField, t: Symbol) -> None:
         )
 
 
-def hamiltonian_field(H: Expr, q: Sequence[Symbol], p: Sequence[Symbol]) -> VectorField:
+def hamiltonian_field(H: Expr, q: Sequence[Symbol] | Symbol, p: Sequence[Symbol] | Symbol) -> VectorField:
     """Return the field X_H = Σ (∂H/∂p ∂/∂q − ∂H/∂q ∂/∂p), so that X_H f = {f, H}.
 
     Its commutators go against the brackets: [X_f, X_g] = −X_{f, g}.
@@ -111,4 +122,10 @@ def hamiltonian_field(H: Expr, q: Sequence[Symbol], p: Sequence[Symbol]) -> Vect
     >>> hamiltonian_field(p**2/2, [q], [p]).components
     (p, 0)
     """
+    H, q, p = given_expression(H, "H"), given_symbols(q, "q"), given_symbols(p, "p")
+    if len(q) != len(p):
+        raise ValueError(
+            f"{counted(len(q), 'coordinate')} and {counted(len(p), 'momentum', 'momenta')}; each coordinate needs one"
+        )
+    (H,) = in_own_symbols([H], (*q, *p))
     return VectorField([*(H.diff(s) for s in p), *(-H.diff(s) for s in q)], (*q, *p))

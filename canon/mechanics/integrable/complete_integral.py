@@ -182,7 +182,7 @@ def hamilton_jacobi(
         Where H separates in none of the coordinates, with the condition that fails; or where it does but the separated
         equations were not found.
     ValueError
-        Where H depends on the time.
+        Where H depends on the time, or holds a symbol of the name of the energy's.
 
     Examples
     --------
@@ -202,7 +202,7 @@ def hamilton_jacobi(
     given_kind(H, Hamiltonian, "what hamilton_jacobi() takes", "give Hamiltonian(H, q, p)")
     domain = as_domain(domain)
     E = Symbol("E", real=True) if energy is None else energy
-    if E in H.H.free_symbols:
+    if E.name in {s.name for s in (*H.q, *H.p, H.t, *H.H.free_symbols)}:
         raise ValueError(f"{E} already stands in H; give another symbol for the energy: energy=Symbol(…)")
     refused: list[str] = []
     if coordinates in ("given", "any"):

@@ -8,7 +8,7 @@ a small map.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol, atan2, sqrt
@@ -18,7 +18,6 @@ from canon.expression.symbols.user_input import given_expression, given_kind
 from canon.mechanics.algebra.all_vanish import all_vanish
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.canonical.generating_function import GeneratingFunction
-from canon.mechanics.canonical.transformation import CanonicalTransformation
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.integrable.kepler_maps import (
     beside,
@@ -36,7 +35,8 @@ from canon.proof.domain.verdict import Verdict, all_hold
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from sympy.logic.boolalg import Boolean
+    from canon.mechanics.canonical.transformation import CanonicalTransformation
+
 
 __all__ = [
     "KeplerVariables",
@@ -81,16 +81,10 @@ class KeplerVariables:
     @cached_property
     def transformation(self) -> CanonicalTransformation:
         """The whole map from the old variables to the new ones, where each step has values."""
-        whole, conditions = self.steps[0], [*self.steps[0].domain.conditions]
+        whole = self.steps[0]
         for step in self.steps[1:]:
-            here = dict(zip(step.variables, whole.images, strict=True))
-            positive = (sp.Gt(z, 0, evaluate=False) for z in step.variables if z.is_positive)
-            carried = (cast("Boolean", c.xreplace(here)) for c in (*positive, *step.domain.conditions))
-            conditions += [c for c in carried if c != sp.true]
             whole = whole.then(step)
-        return CanonicalTransformation(
-            whole.q, whole.p, whole.new_q, whole.new_p, Domain(tuple(conditions)), whole.t
-        )
+        return whole
 
     def is_canonical(self, budget: float = 10.0) -> Verdict:
         """Tell whether the map is canonical: where each step is, so are they together."""

@@ -12,7 +12,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.expression.symbols.symbol import time, time_derivative, velocity
-from canon.expression.symbols.user_input import given_expression
+from canon.expression.symbols.user_input import all_of, counted, given_expression
 from canon.mechanics.algebra.all_vanish import all_vanish
 from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain, plain_all
 from canon.mechanics.lagrange.body import RigidBody, kinetic_energy
@@ -255,15 +255,26 @@ def charge_term(
 
 def electric_field(A: Sequence[Expr], phi: Expr, x: Sequence[Symbol], t: Symbol = time) -> tuple[Expr, ...]:
     """Return E = −∇φ − ∂A/∂t in Cartesian coordinates."""
-    return tuple(
-        -sp.sympify(phi, strict=True).diff(s) - sp.sympify(a, strict=True).diff(t)
-        for s, a in zip(x, A, strict=True)
-    )
+    x = coordinate_symbols(x)
+    potential, *components = plain_all((phi, *all_of(A, len(x), "A", "coordinates")), x, t)
+    return tuple(-potential.diff(s) - a.diff(t) for s, a in zip(x, components, strict=True))
 
 
 def magnetic_field(A: Sequence[Expr], x: Sequence[Symbol]) -> tuple[Expr, Expr, Expr]:
-    """Return B = ∇ × A in Cartesian coordinates."""
-    a = [sp.sympify(component, strict=True) for component in A]
+    """Return B = ∇ × A in Cartesian coordinates.
+
+    Raises
+    ------
+    ValueError
+        Where there are not three components and three coordinates.
+    """
+    x = coordinate_symbols(x)
+    if len(x) != 3 or len(A) != 3:
+        raise ValueError(
+            f"{counted(len(A), 'component')} of A and {counted(len(x), 'coordinate')}: give three components and three "
+            "coordinates, 0 for a component that is none"
+        )
+    a = plain_all(A, x)
     return (
         a[2].diff(x[1]) - a[1].diff(x[2]),
         a[0].diff(x[2]) - a[2].diff(x[0]),

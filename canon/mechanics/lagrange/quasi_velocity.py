@@ -119,10 +119,14 @@ class Kinematics:
 
     def plain(self, f: Expr) -> Expr:
         """Return f with symbols in place of SymPy's dynamicsymbols of q and u."""
-        if not (f.has(AppliedUndef) or needs_plain(f.free_symbols, self.t)):
+        if not (f.has(AppliedUndef) or needs_plain(f.free_symbols, self._named)):
             return f
         others = [w for w in self.u if not isinstance(w, Rate)]
         return plain(f, (*self.q, *others), self.t)
+
+    @cached_property
+    def _named(self) -> Mapping[str, Symbol]:
+        return {s.name: s for s in (*self.q, *self.u, self.t)}
 
     def along(self, f: Any) -> Expr:
         """Return f(q, q̇, q̈, t) as a function of q, u, u̇, t."""

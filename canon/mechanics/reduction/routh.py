@@ -18,7 +18,7 @@ from canon.expression.symbols.symbol import momentum, time, velocity
 from canon.expression.symbols.user_input import counted, given_kind
 from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain_places
 from canon.mechanics.algebra.substitution import exchanged, substitute
-from canon.mechanics.hamilton.legendre import eliminate_velocities
+from canon.mechanics.hamilton.legendre import check_momenta, eliminate_velocities
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.reduction.ignorable import ignorable_coordinates, is_ignorable
 from canon.proof.domain.domain import Domain, as_domain
@@ -202,7 +202,7 @@ def routhian(
     Raises
     ------
     ValueError
-        Where a coordinate is not known to be ignorable.
+        Where a coordinate is not known to be ignorable, or a momentum is called as another symbol in L is.
     LegendreError
         Where the velocities cannot be eliminated.
 
@@ -265,6 +265,7 @@ def _ignored(
             f"{counted(len(p), 'momentum', 'momenta')} for "
             f"{counted(len(ignored), 'ignorable coordinate')}; each needs one"
         )
+    check_momenta(p, lagrangian, "routhian(L, [phi], momenta=[…])")
     return ignored, p
 
 
