@@ -26,6 +26,7 @@ from canon.mechanics.lagrange.body import (
     kinetic_form,
 )
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
+from canon.mechanics.lagrange.dependence import DependentConstraintsError
 from canon.mechanics.lagrange.force import charge_term, lagrangian_of_bodies, magnetic_field
 from canon.mechanics.lagrange.newton_euler import Load, NewtonEuler, weights
 from canon.mechanics.lagrange.quasi_velocity import Kinematics, maggi_equations
@@ -327,3 +328,16 @@ def test_null_directions_beside_forces_with_accelerations() -> None:
         singularity(Lagrangian(x.dot**2 / 2, [x, y], [0, -c * y.ddot - y]))
     found = singularity(Lagrangian(x.dot**2 / 2, [x, y], [0, -y]))
     assert found.motion_constraints == (y,)
+
+
+def test_a_constraint_that_follows_from_a_factor_of_it() -> None:
+    """The two gradients are parallel where both constraints hold, and nowhere else."""
+    L = Lagrangian((x.dot**2 + y.dot**2) / 2, [x, y])
+    for first in (x - y, y - x, m * (x - y)):
+        with pytest.raises(
+            DependentConstraintsError, match=r"constraint 2 .* follows from constraint 1"
+        ) as caught:
+            _ = ConstrainedLagrangian(L, holonomic=[first, (x - y) * (x + 2)]).degrees_of_freedom
+        assert caught.value.rows == (1, 2)
+    assert ConstrainedLagrangian(L, holonomic=[m * (x - y), m * (x + 2)]).degrees_of_freedom == 0
+    assert ConstrainedLagrangian(L, holonomic=[(x - y) * (x + 2)]).degrees_of_freedom == 1
