@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from canon.mechanics.algebra.substitution import exchanged
 from canon.proof.definedness.definedness import lack_beside, lack_of_value
 from canon.proof.domain.domain import Domain, as_domain
 from canon.proof.domain.verdict import Evidence, Status, Verdict, all_hold
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
     from sympy import Expr
 
-__all__ = ["all_vanish", "differ", "having_values", "vanish_together"]
+__all__ = ["all_vanish", "differ", "having_values", "is_quadratic_in", "vanish_together"]
 
 VALUE_SECONDS = 2.0
 """Time for the question whether an answer has a value."""
@@ -141,6 +142,29 @@ def having_values(
             seconds=verdict.seconds,
         )
     return verdict if open_ is None else open_
+
+
+def is_quadratic_in(f: Expr, variables: Sequence[sp.Symbol], domain: Domain | None = None) -> bool:
+    """Tell whether f is certainly a polynomial of degree 2 at most, its coefficients free of the variables.
+
+    That the second derivatives are free of them would not do: slopes in pieces may be constant and differ.
+
+    Examples
+    --------
+    >>> v = sp.Symbol("v", real=True)
+    >>> is_quadratic_in(v**2 / 2 + v, [v]), is_quadratic_in(v**2 / 2 + sp.Piecewise((v, v > 0), (0, True)), [v])
+    (True, False)
+    """
+    slopes = [f.diff(v) for v in variables]
+    if any(slope.diff(v).has(*variables) for slope in slopes for v in variables):
+        return False
+    if f.is_polynomial(*variables):
+        return True
+    at_rest = dict.fromkeys(variables, sp.S.Zero)
+    linear = (exchanged(a, at_rest) * v for a, v in zip(slopes, variables, strict=True))
+    square = (a.diff(v) * u * v / 2 for a, u in zip(slopes, variables, strict=True) for v in variables)
+    form = sp.Add(exchanged(f, at_rest), *linear, *square)
+    return vanishes_off_kinks(f - form, as_domain(domain)).holds
 
 
 def differ(expression: Expr, domain: Domain | None = None) -> bool:

@@ -20,9 +20,10 @@ from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols
 from canon.mechanics.at_scale.assembly import Assembly
 from canon.mechanics.at_scale.kinetic_terms import Reader, channels
 from canon.mechanics.at_scale.ldl import solved_on_graph
+from canon.mechanics.lagrange.lagrangian import forces_in_order
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from sympy import Expr, Symbol
 
@@ -119,12 +120,17 @@ def canonical_derivation(
     q: Sequence[Symbol],
     V: Expr = sp.S.Zero,
     field: Sequence[Expr] = (),
-    forces: Sequence[Expr] | None = None,
+    forces: Sequence[Expr] | Mapping[Symbol, Expr] | None = None,
     t: Symbol = time,
 ) -> CanonicalEquations:
     """Return Hamilton's equations of bodies, derived on an expression graph.
 
     The parameters are those of :func:`canon.mechanics.at_scale.second_order.derivation`.
+
+    Raises
+    ------
+    ValueError
+        Where the forces do not match the coordinates, or V is not affine in the velocities.
 
     Examples
     --------
@@ -143,15 +149,24 @@ def canonical_derivation(
     loads = [graph.zero if c.load is None else mul((c.weight, c.load)) for c in found]
     still = [graph.zero if c.rest is None else mul((c.weight, c.rest)) for c in found]
     momenta = [mul((c.weight, assembly.speed(c))) for c in found]
-    U = reader.given(V)
-    pulls = [graph.negative(a) for a in graph.gradient(U, reader.q)]
-    given = [reader.given(Q) for Q in forces or ()] or [graph.zero] * len(reader.q)
+    potential = reader.given(V)
+    pulls = [graph.negative(a) for a in graph.gradient(potential, reader.q)]
+    given = [reader.given(Q) for Q in forces_in_order(forces, reader.q)] or [graph.zero] * len(reader.q)
     p_dot = zip(assembly.slopes_of_T(momenta), assembly.projected(loads), pulls, given, strict=True)
-    energies = [U, *assembly.heights(bodies, field)]
+    drift = assembly.projected(still)
+    shifts = reader.slopes_in_velocities(V)
+    if (
+        shifts
+    ):  # p = ∂T/∂q̇ − ∂V/∂q̇, and H holds V without velocities: Σ q̇ ∂V/∂q̇ − V is that with its sign changed
+        drift = [graph.plain_add((b, graph.negative(a))) for b, a in zip(drift, shifts, strict=True)]
+        (potential,) = graph.substitute(
+            [potential], {graph.symbol(velocity(s)): graph.zero for s in reader.q}
+        )
+    energies = [potential, *assembly.heights(bodies, field)]
     for w, c in zip(still, found, strict=True):
         if c.rest is not None:
             energies.append(mul((graph.number(Fraction(-1, 2)), w, c.rest)))
     return CanonicalEquations(
-        graph, reader.q, assembly.mass_matrix(), tuple(assembly.projected(still)),
+        graph, reader.q, assembly.mass_matrix(), tuple(drift),
         tuple(graph.plain_add(terms) for terms in p_dot), graph.plain_add(energies), t,
     )  # fmt: skip

@@ -22,6 +22,7 @@ from canon.mechanics.algebra.dynamicsymbols import needs_plain, plain
 from canon.mechanics.algebra.substitution import exchanged
 from canon.mechanics.lagrange.body import Particle, PlanarBody
 from canon.mechanics.lagrange.quasi_velocity import Kinematics
+from canon.proof.trees.affine_form import is_affine
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -83,6 +84,26 @@ class Reader:
     def given(self, f: Expr) -> int:
         """Return the node of what a user gave beside the bodies: forces, potentials."""
         return self.node(plain(f, self.q, self.t))
+
+    def slopes_in_velocities(self, V: Expr) -> list[int]:
+        """Return ∂V/∂q̇ of a potential that is affine in the velocities; nothing where it holds none.
+
+        Raises
+        ------
+        ValueError
+            Where it is not affine in them.
+        """
+        v = [velocity(s) for s in self.q]
+        node = self.given(V)
+        if not self.graph.symbols(node) & set(v):
+            return []
+        energy = plain(V, self.q, self.t)
+        if not is_affine(energy, v):
+            raise ValueError(
+                f"V = {energy} is not affine in the velocities, so it changes the masses; write L = T − V and take "
+                "derivation_of_lagrangian"
+            )
+        return list(self.graph.gradient(node, v))
 
     def _read(self, f: Expr) -> int:
         if isinstance(f, sp.Symbol) and not needs_plain((f,), self._named):

@@ -17,13 +17,13 @@ from canon.expression.graph.common_subexpressions import shared_to_sympy
 from canon.expression.graph.graph import Graph
 from canon.expression.graph.sums import opposite, signed_product
 from canon.expression.symbols.symbol import time, velocity
-from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols
 from canon.mechanics.at_scale.assembly import Assembly
 from canon.mechanics.at_scale.kinetic_terms import Reader, channels
+from canon.mechanics.lagrange.lagrangian import forces_in_order
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from sympy import Expr, Symbol
 
@@ -107,7 +107,7 @@ def derivation(
     q: Sequence[Symbol],
     V: Expr = sp.S.Zero,
     field: Sequence[Expr] = (),
-    forces: Sequence[Expr] | None = None,
+    forces: Sequence[Expr] | Mapping[Symbol, Expr] | None = None,
     t: Symbol = time,
 ) -> SecondOrderEquations:
     """Return Lagrange's equations M q̈ = f of bodies, derived on an expression graph.
@@ -119,13 +119,18 @@ def derivation(
     q
         The coordinates; SymPy's dynamicsymbols are welcome here and in everything else that is given.
     V
-        The potential energy besides that of the field.
+        The potential energy besides that of the field; it may be affine in the velocities, as −e (A·ṙ − φ) is.
     field
         The acceleration vector of uniform gravity, as in ``(0, -g)``.
     forces
-        Generalized forces Q(q, q̇, t) without potential, one a coordinate.
+        Generalized forces Q(q, q̇, t) without potential, one a coordinate; or by coordinate, ``{x: -c*x.dot}``.
     t
         The time.
+
+    Raises
+    ------
+    ValueError
+        Where the forces do not match the coordinates, or V is not affine in the velocities.
 
     Examples
     --------
@@ -149,22 +154,21 @@ def derivation(
     for c in assembly.channels:
         for i, term in assembly.not_a_rate(c):
             terms[i].append(term)
-    _add_given(terms, reader, V, forces)
+    _add_given(terms, reader, V, forces_in_order(forces, reader.q))
     return SecondOrderEquations(
         graph, reader.q, assembly.mass_matrix(), tuple(map(graph.plain_add, terms)), t
     )
 
 
-def _add_given(terms: list[list[int]], reader: Reader, V: Expr, forces: Sequence[Expr] | None) -> None:
-    """Append −∂V/∂q and the given forces to the terms of each coordinate."""
-    if forces is not None and len(forces) != len(terms):
-        raise ValueError(
-            f"{counted(len(forces), 'generalized force')} for "
-            f"{counted(len(terms), 'coordinate')}; give one each"
-        )
-    for i, a in enumerate(reader.graph.gradient(reader.given(V), reader.q)):
-        terms[i].append(reader.graph.negative(a))
-    for i, Q in enumerate(forces or ()):
+def _add_given(terms: list[list[int]], reader: Reader, V: Expr, forces: Sequence[Expr]) -> None:
+    """Append d/dt ∂V/∂q̇ − ∂V/∂q and the given forces to the terms of each coordinate."""
+    graph = reader.graph
+    for i, a in enumerate(graph.gradient(reader.given(V), reader.q)):
+        terms[i].append(graph.negative(a))
+    along = {**{s: graph.symbol(velocity(s)) for s in reader.q}, reader.t: graph.one}
+    for i, a in enumerate(graph.directional(reader.slopes_in_velocities(V), along)):
+        terms[i].append(a)
+    for i, Q in enumerate(forces):
         terms[i].append(reader.given(Q))
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
+from canon.mechanics.algebra.all_vanish import is_quadratic_in
 from canon.mechanics.algebra.branch_point import branch_points
 from canon.mechanics.algebra.linear import SingularMatrixError, eliminate, is_regular, solve
 from canon.mechanics.algebra.possible_motion import where_real
@@ -102,7 +103,7 @@ def eliminate_velocities(
     """
     gradient = [f.diff(x) for x in old]
     hessian = sp.Matrix([[g.diff(x) for x in old] for g in gradient])
-    quadratic = not hessian.has(*old)
+    quadratic = is_quadratic_in(f, old, domain)
     try:
         transformed = (
             _of_quadratic(f, gradient, hessian, old, new, domain)

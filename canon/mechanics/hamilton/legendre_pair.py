@@ -52,8 +52,8 @@ def hamiltonian(
     Raises
     ------
     LegendreError
-        With the null direction, where the velocity Hessian is singular; or where the velocities have no
-        closed form.
+        With the null direction, where the velocity Hessian is singular; where the velocities have no
+        closed form; or where forces without a potential act.
     ValueError
         The number of momenta is wrong, or one is called as another symbol in L is.
 
@@ -73,11 +73,7 @@ def hamiltonian(
     c*sqrt(c**2*m**2 + p_x**2)
     """
     given_kind(lagrangian, Lagrangian, "what hamiltonian() transforms", "lagrangian() goes the other way")
-    if any(Q != 0 for Q in lagrangian.forces):
-        raise LegendreError(
-            "the system has forces without a potential; Hamilton's equations of H alone would miss them. "
-            "Put what has a potential into L, or stay with Lagrange's equations"
-        )
+    _check_no_forces(lagrangian)
     momenta = coordinate_symbols(p) if p is not None else tuple(momentum(q) for q in lagrangian.q)
     if len(momenta) != len(lagrangian.q):
         raise ValueError(
@@ -91,6 +87,28 @@ def hamiltonian(
     return Hamiltonian(H, lagrangian.q, momenta, lagrangian.t)
 
 
+<<<<<<< HEAD
+=======
+def _check_no_forces(lagrangian: Lagrangian) -> None:
+    if any(Q != 0 for Q in lagrangian.forces):
+        raise LegendreError(
+            "the system has forces without a potential; Hamilton's equations of H alone would miss them. "
+            "Put what has a potential into L, or stay with Lagrange's equations"
+        )
+
+
+def _check_names(lagrangian: Lagrangian, momenta: Sequence[Symbol]) -> None:
+    """Refuse momenta that are called as another symbol of L is: H would read as if they were one."""
+    names = {s.name for s in symbols_of(lagrangian.L) if s not in momenta}
+    clash = next((p for p in momenta if p.name in names), None)
+    if clash is not None:
+        raise ValueError(
+            f"{clash} is the name of a momentum and of another symbol in L: call that otherwise, or give symbols for "
+            "the momenta, hamiltonian(L, p=[…])"
+        )
+
+
+>>>>>>> 01968ee6138ec082af15b6712e875af0a69adaa3
 def lagrangian(hamiltonian: Hamiltonian, domain: Domain | None = None) -> Lagrangian:
     """Return L(q, q̇, t) = Σ p q̇ − H with the momenta eliminated.
 
@@ -122,6 +140,11 @@ def lagrangian(hamiltonian: Hamiltonian, domain: Domain | None = None) -> Lagran
 def has_hamiltonian(lagrangian: Lagrangian, domain: Domain | None = None) -> Verdict:
     """Tell whether the velocities can be eliminated: whether ∂²L/∂q̇² is regular at generic points.
 
+    Raises
+    ------
+    LegendreError
+        Where forces without a potential act.
+
     Examples
     --------
     >>> from canon import coordinates
@@ -129,6 +152,7 @@ def has_hamiltonian(lagrangian: Lagrangian, domain: Domain | None = None) -> Ver
     >>> has_hamiltonian(Lagrangian((x.dot + y.dot)**2, [x, y])).feedback
     'the velocity Hessian is singular: it maps the direction (-1, 1) to zero'
     """
+    _check_no_forces(lagrangian)
     return is_regular(lagrangian.mass_matrix, domain, "the velocity Hessian")
 
 
@@ -138,6 +162,11 @@ def is_hamiltonian_of(
     """Tell whether H is the Hamiltonian of a Lagrangian.
 
     The velocity Hessian must be regular and H(q, ∂L/∂q̇, t) = Σ p q̇ − L, so nothing has to be inverted.
+
+    Raises
+    ------
+    LegendreError
+        Where forces without a potential act.
 
     Examples
     --------
@@ -149,6 +178,7 @@ def is_hamiltonian_of(
     >>> is_hamiltonian_of(L, x.momentum**2/2 - x**2, [x.momentum]).status.name
     'FAILS'
     """
+    _check_no_forces(lagrangian)
     domain = where_root_is_real(lagrangian.L, lagrangian.velocities, as_domain(domain))
     question = "H is the Hamiltonian of L"
 

@@ -158,6 +158,8 @@ def is_symmetry(
 ) -> Verdict:
     """Tell whether ξ, τ change L dt by dK: ξ·L_q + (ξ̇ − q̇ τ̇)·L_v + τ L_t + τ̇ L = K̇ identically.
 
+    What forces without a potential do along the displacements, Q·(ξ − q̇ τ), is added to the change of L.
+
     Examples
     --------
     >>> from canon import Lagrangian, coordinates, time as t
@@ -173,6 +175,8 @@ def is_symmetry(
     for s, a in zip(q, moves, strict=True):
         v = velocity(s)
         change += [a * L.diff(s), (time_derivative(a, q, t) - v * delay_dot) * L.diff(v)]
+    for s, a, Q in zip(q, moves, lagrangian.forces, strict=False):  # none are given, or one each
+        change.append(Q * (a - velocity(s) * delay))
     verdict = all_vanish(
         [("the change of L dt is dK", sp.Add(*change))], "this is a symmetry of the action", domain
     )

@@ -15,15 +15,16 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.cached_property import cached_property
-from canon.expression.symbols.symbol import time
-from canon.expression.symbols.user_input import counted, given_expression
+from canon.expression.symbols.symbol import time, velocity
+from canon.expression.symbols.user_input import given_expression
 from canon.mechanics.algebra.linear import solve_affine
-from canon.mechanics.algebra.substitution import as_tuple, entry
+from canon.mechanics.algebra.substitution import entry
 from canon.mechanics.lagrange.body import bodies_of
+from canon.mechanics.lagrange.lagrangian import forces_in_order
 from canon.mechanics.lagrange.quasi_velocity import Kinematics
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from canon.mechanics.lagrange.body import Body
 
@@ -41,11 +42,11 @@ class GibbsAppell:
     q
         The coordinates.
     V
-        The potential energy V(q, t).
+        The potential energy V(q, t), or V(q, q̇, t) as −e (A·ṙ − φ) of a charge.
     u, q_dot
         Quasi-velocities and q̇ as functions of q, u, t; the velocities themselves unless given.
     forces
-        Generalized forces Q(q, q̇, t) without potential, one a coordinate.
+        Generalized forces Q(q, q̇, t) without potential, one a coordinate; or by coordinate, ``{x: -c*x.dot}``.
     t
         The time.
 
@@ -71,19 +72,14 @@ class GibbsAppell:
         V: Expr = sp.S.Zero,
         u: Sequence[Symbol] | None = None,
         q_dot: Sequence[Expr] | None = None,
-        forces: Sequence[Expr] | None = None,
+        forces: Sequence[Expr] | Mapping[Symbol, Expr] | None = None,
         t: Symbol = time,
     ) -> None:
         object.__setattr__(self, "bodies", bodies_of(bodies))
         object.__setattr__(self, "kinematics", Kinematics(q, u, q_dot, t))
         object.__setattr__(self, "V", self.kinematics.plain(given_expression(V, "V")))
-        given = as_tuple(forces or (sp.S.Zero,) * len(q))
+        given = forces_in_order(forces, self.q) or (sp.S.Zero,) * len(self.q)
         object.__setattr__(self, "Q", tuple(self.kinematics.plain(force) for force in given))
-        if len(self.Q) != len(self.q):
-            raise ValueError(
-                f"{counted(len(self.Q), 'generalized force')} for "
-                f"{counted(len(self.q), 'coordinate')}; give one each"
-            )
 
     def _repr_latex_(self) -> str:
         rows = [f"S &= {sp.latex(self.gibbs_function)}"]
@@ -130,9 +126,12 @@ class GibbsAppell:
 
     @cached_property
     def forces(self) -> tuple[Expr, ...]:
-        """The generalized forces of the quasi-velocities, Σ (Q − ∂V/∂q) ∂q̇/∂u."""
-        B, along = self.kinematics.basis, self.kinematics.along
-        along_q = [along(Q) - self.V.diff(s) for s, Q in zip(self.q, self.Q, strict=True)]
+        """The generalized forces of the quasi-velocities, Σ (Q + d/dt ∂V/∂q̇ − ∂V/∂q) ∂q̇/∂u."""
+        B, along, rate = self.kinematics.basis, self.kinematics.along, self.kinematics.rate
+        moving = [rate(along(self.V.diff(velocity(s)))) for s in self.q]
+        along_q = [
+            along(Q) + a - along(self.V.diff(s)) for s, Q, a in zip(self.q, self.Q, moving, strict=True)
+        ]
         return tuple(
             sp.Add(*(force * entry(B, i, j) for i, force in enumerate(along_q))) for j in range(B.cols)
         )

@@ -14,9 +14,9 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.cached_property import cached_property
-from canon.expression.symbols.symbol import time, velocity
+from canon.expression.symbols.symbol import Rate, time, velocity
 from canon.expression.symbols.user_input import counted, given_expression, given_kind
-from canon.mechanics.algebra.all_vanish import all_vanish
+from canon.mechanics.algebra.all_vanish import all_vanish, is_quadratic_in
 from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain, plain_all
 from canon.mechanics.algebra.substitution import as_tuple, entry, exchanged
 from canon.mechanics.lagrange.quasi_velocity import Kinematics
@@ -301,9 +301,15 @@ def kinetic_form(T: Expr, q: Sequence[Symbol]) -> KineticForm:
     at_rest = dict.fromkeys(v, sp.S.Zero)
     slopes = [energy.diff(w) for w in v]
     A = sp.ImmutableDenseMatrix([[slope.diff(w) for w in v] for slope in slopes])
-    if A.has(*v):
+    if not is_quadratic_in(energy, v):
         raise ValueError("T is not quadratic in the velocities; it cannot be the kinetic energy of bodies")
     return KineticForm(A, tuple(exchanged(s, at_rest) for s in slopes), exchanged(energy, at_rest), q)
+
+
+def _at_rest(omega: Expr) -> Expr:
+    """Return an angular velocity at q̇ = 0; what is named as a velocity is one."""
+    rates = [s for s in omega.atoms(Symbol) if isinstance(s, Rate) or s.name.endswith("_dot")]
+    return exchanged(omega, dict.fromkeys(rates, sp.S.Zero))
 
 
 def is_scleronomic(
@@ -334,10 +340,13 @@ def is_scleronomic(
     for i, body in enumerate(bodies, 1):
         claims += [(f"∂r/∂t of body {i}", plain(place, named, t).diff(t)) for place in body.r]
         if isinstance(body, PlanarBody):
-            turning = plain(body.omega if body.angle is None else body.angle, named, t)
-            claims.append((f"how body {i} turns at fixed q", turning.diff(t)))
+            angles, rates = ((), (body.omega,)) if body.angle is None else ((body.angle,), ())
         elif isinstance(body, RigidBody):
-            turning = body.omega if body.rotation is None else tuple(body.rotation.flat())
-            parts = plain_all(turning or (), named, t)
-            claims += [(f"the orientation of body {i} at fixed q", part.diff(t)) for part in parts]
+            angles, rates = ((), body.omega or ()) if body.rotation is None else (body.rotation.flat(), ())
+        else:
+            continue
+        omegas = plain_all(rates, named, t)
+        claims += [(f"∂/∂t of how body {i} stands", part.diff(t)) for part in plain_all(angles, named, t)]
+        claims += [(f"∂ω/∂t of body {i}", omega.diff(t)) for omega in omegas]
+        claims += [(f"ω of body {i} while q rests", _at_rest(omega)) for omega in omegas]
     return all_vanish(claims, "the bodies are bound scleronomically", domain)

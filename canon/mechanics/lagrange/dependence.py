@@ -78,8 +78,7 @@ def check_independent(
     DependentConstraintsError
         With the rows, the combination, and whether they contradict one another.
     """
-    for a, f in enumerate(constraints[:holonomic], 1):
-        _refuse_power(a, f)
+    factors = [_factors(a, f) for a, f in enumerate(constraints[:holonomic], 1)]
     for c in eliminate(directions.T, domain=domain).null_directions:
         rows = tuple(a + 1 for a, factor in enumerate(c) if factor != 0)
         contradictory = _contradict(c, constraints, rests, holonomic, moving, domain)
@@ -94,12 +93,13 @@ def check_independent(
         else:
             what, remedy = f"depend on one another: {sum_} vanishes", "leave one of them out"
         raise DependentConstraintsError(f"{named} {what}; {remedy}", rows, c, contradictory)
+    _refuse_multiples(constraints, [[h for h in each if h.has(*moving)] for each in factors])
 
 
-def _refuse_power(a: int, f: Expr) -> None:
-    """Refuse f = hᵏ, whose gradient vanishes where f does, so that no reaction follows from it."""
+def _factors(a: int, f: Expr) -> list[Expr]:
+    """Return the factors of f, and refuse hᵏ, whose gradient vanishes where f does: no reaction follows from it."""
     if f.has(sp.Piecewise):  # SymPy factors no polynomials in these
-        return
+        return []
     factors = polynomial_factors(f)
     repeated = [h for h, power in factors if power > 1]
     if repeated:
@@ -110,6 +110,29 @@ def _refuse_power(a: int, f: Expr) -> None:
             (),
             contradictory=None,
         )
+    return [h for h, _ in factors]
+
+
+def _refuse_multiples(constraints: Sequence[Expr], factors: Sequence[Sequence[Expr]]) -> None:
+    """Refuse f = h k beside h = 0, from which it follows: their gradients are parallel where both hold, and only there.
+
+    Parameters
+    ----------
+    constraints
+        The constraints as the user gave them, holonomic ones first.
+    factors
+        The factors of each holonomic one that change with the motion.
+    """
+    for a, whole in enumerate(factors):
+        for b, parts in enumerate(factors):
+            if a != b and len(whole) == 1 and {whole[0], -whole[0]} & {*parts}:
+                raise DependentConstraintsError(
+                    f"constraint {b + 1} ({constraints[b]} = 0) follows from constraint {a + 1} "
+                    f"({constraints[a]} = 0), a factor of it; leave it out",
+                    (a + 1, b + 1),
+                    (),
+                    contradictory=False,
+                )
 
 
 def _contradict(

@@ -12,16 +12,20 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.expression.symbols.symbol import time, time_derivative, velocity
+<<<<<<< HEAD
 from canon.expression.symbols.user_input import all_of, counted, given_expression
+=======
+from canon.expression.symbols.user_input import counted, given_expression
+>>>>>>> 01968ee6138ec082af15b6712e875af0a69adaa3
 from canon.mechanics.algebra.all_vanish import all_vanish
 from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain, plain_all
 from canon.mechanics.lagrange.body import RigidBody, kinetic_energy
-from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.mechanics.lagrange.lagrangian import Lagrangian, forces_in_order
 from canon.mechanics.lagrange.quasi_velocity import Kinematics
 from canon.proof.trees.affine_form import is_affine
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from canon.mechanics.lagrange.body import Body
     from canon.proof.domain.domain import Domain
@@ -239,6 +243,11 @@ def charge_term(
     t
         The time.
 
+    Raises
+    ------
+    ValueError
+        Where A has not as many components as the position.
+
     Examples
     --------
     >>> from canon import coordinates
@@ -248,6 +257,10 @@ def charge_term(
     >>> charge_term(e, (x, y), [x, y], A=(0, B*x))
     B*e*x*y_dot
     """
+    if A is not None and len(A) != len(r):
+        raise ValueError(
+            f"A has {counted(len(A), 'component')} at a position of {len(r)}; give as many, 0 where there is none"
+        )
     q = coordinate_symbols(q)
     along = zip(plain_all(A or (sp.S.Zero,) * len(r), q, t), plain_all(r, q, t), strict=True)
     return e * (sp.Add(*(a * time_derivative(x, q, t) for a, x in along)) - plain(phi, q, t))
@@ -266,6 +279,7 @@ def magnetic_field(A: Sequence[Expr], x: Sequence[Symbol]) -> tuple[Expr, Expr, 
     Raises
     ------
     ValueError
+<<<<<<< HEAD
         Where there are not three components and three coordinates.
     """
     x = coordinate_symbols(x)
@@ -275,6 +289,16 @@ def magnetic_field(A: Sequence[Expr], x: Sequence[Symbol]) -> tuple[Expr, Expr, 
             "coordinates, 0 for a component that is none"
         )
     a = plain_all(A, x)
+=======
+        Where A or x has not three components.
+    """
+    if len(A) != 3 or len(x) != 3:
+        raise ValueError(
+            f"A has {counted(len(A), 'component')} in {counted(len(x), 'coordinate')}; ∇ × A needs three of each: in "
+            "a plane give A_z = 0 and z besides"
+        )
+    a = [sp.sympify(component, strict=True) for component in A]
+>>>>>>> 01968ee6138ec082af15b6712e875af0a69adaa3
     return (
         a[2].diff(x[1]) - a[1].diff(x[2]),
         a[0].diff(x[2]) - a[2].diff(x[0]),
@@ -286,7 +310,7 @@ def lagrangian_of_bodies(
     bodies: Sequence[Body],
     q: Sequence[Symbol],
     V: Expr = sp.S.Zero,
-    forces: Sequence[Expr] | None = None,
+    forces: Sequence[Expr] | Mapping[Symbol, Expr] | None = None,
     dissipation: Expr = sp.S.Zero,
     t: Symbol = time,
 ) -> Lagrangian:
@@ -301,7 +325,7 @@ def lagrangian_of_bodies(
     V
         The potential energy; one that depends on velocities (−e (A·ṙ − φ) of a charge) is welcome.
     forces
-        Generalized forces Q, one a coordinate.
+        Generalized forces Q, one a coordinate; or by coordinate, ``{x: -c*x.dot}``.
     dissipation
         Rayleigh's function.
     t
@@ -318,7 +342,7 @@ def lagrangian_of_bodies(
     """
     q = coordinate_symbols(q)
     damping = rayleigh_forces(dissipation, q)
-    given = plain_all(forces or (sp.S.Zero,) * len(q), q, t)
+    given = plain_all(forces_in_order(forces, q) or (sp.S.Zero,) * len(q), q, t)
     Q = [a + b for a, b in zip(given, damping, strict=True)]
     L = kinetic_energy(bodies, q, t) - plain(V, q, t)
     return Lagrangian(L, q, Q if any(f != 0 for f in Q) else None, t)

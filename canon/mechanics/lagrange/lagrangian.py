@@ -20,15 +20,34 @@ from canon.proof.domain.verdict import Undecided
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["Lagrangian"]
+__all__ = ["Lagrangian", "forces_in_order"]
 
 
-def _forces(given: Any, q: Sequence[Symbol]) -> tuple[Any, ...]:
-    """Return the generalized forces, in the order of the coordinates where they are given by coordinate."""
+def forces_in_order(given: Any, q: Sequence[Symbol]) -> tuple[Any, ...]:
+    """Return the generalized forces, in the order of the coordinates where they are given by coordinate.
+
+    Raises
+    ------
+    ValueError
+        Where one is given for what is no coordinate, or not as many as there are coordinates.
+
+    Examples
+    --------
+    >>> from canon import coordinates
+    >>> x, y = coordinates("x y")
+    >>> forces_in_order({y: -2}, [x, y]), forces_in_order(None, [x, y])
+    ((0, -2), ())
+    """
     if given is None:
         return ()
     if not isinstance(given, Mapping):
-        return as_tuple(given)
+        found = as_tuple(given)
+        if found and len(found) != len(q):
+            raise ValueError(
+                f"{counted(len(found), 'generalized force')} for {counted(len(q), 'coordinate')}; give one each, "
+                "0 where there is none"
+            )
+        return found
     forces: dict[Any, Any] = {coordinate_symbols([key])[0]: force for key, force in given.items()}
     if others := [str(key) for key in forces if key not in q]:
         raise ValueError(
@@ -108,18 +127,12 @@ class Lagrangian:
                 "and nothing would tell them apart; call it otherwise"
             )
         check_none_reads_as_the_time(symbols, "Lagrangian(L, q", t)
-        given = _forces(forces, symbols)
+        given = forces_in_order(forces, symbols)
         expressions = [plain(e, symbols, t) for e in (L, *given)]
         object.__setattr__(self, "L", expressions[0])
         object.__setattr__(self, "q", symbols)
         object.__setattr__(self, "t", t)
         object.__setattr__(self, "forces", tuple(expressions[1:]))
-        if self.forces and len(self.forces) != len(symbols):
-            raise ValueError(
-                f"{counted(len(self.forces), 'generalized force')} for "
-                f"{counted(len(symbols), 'coordinate')}; give one each, "
-                "0 where there is none"
-            )
         found = [str(acceleration(s)) for s in symbols if self.L.has(acceleration(s))]
         if found:
             raise ValueError(

@@ -23,6 +23,7 @@ from canon.mechanics.lagrange.appell import cross
 from canon.mechanics.lagrange.body import Particle, RigidBody
 from canon.mechanics.lagrange.overdetermined import solve_overdetermined, symmetric_product
 from canon.mechanics.lagrange.quasi_velocity import Kinematics
+from canon.proof.trees.affine_form import is_affine
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -98,7 +99,7 @@ class NewtonEuler:
     Raises
     ------
     ValueError
-        Where a load is on no body, or its dimension is not that of its body.
+        Where a load is on no body, or its force, its place or its torque has not the dimension of its body.
 
     Examples
     --------
@@ -142,12 +143,7 @@ class NewtonEuler:
                 raise ValueError(
                     f"a load is on body {load.body}; there are {len(self.bodies)}, counted from 0"
                 )
-            dimension = len(self.bodies[load.body].r)
-            if load.force and len(load.force) != dimension:
-                raise ValueError(
-                    f"a force of {counted(len(load.force), 'component')} "
-                    f"on body {load.body}, whose position has {dimension}; give as many"
-                )
+            _check_dimensions(load, self.bodies[load.body])
 
     @cached_property
     def balances(self) -> tuple[Expr, ...]:
@@ -171,12 +167,13 @@ class NewtonEuler:
         Raises
         ------
         ValueError
-            Where the balances leave an unknown open (name the reactions that are missing or too many), or are
-            certainly inconsistent.
+            Where the balances leave an unknown open (name the reactions that are missing or too many), are not
+            linear in them, or are certainly inconsistent.
         """
         still = dict.fromkeys(self.unknowns, sp.S.Zero)
         matrix = sp.Matrix([[e.diff(x) for x in self.unknowns] for e in self.balances])
-        if matrix.has(*self.unknowns):
+        acting = (part for load in self.loads for part in (*load.force, *load.torque))
+        if matrix.has(*self.unknowns) or not all(is_affine(part, self.unknowns) for part in acting):
             raise ValueError("the balances are not linear in the reactions; write each reaction as a factor")
         right = sp.Matrix([-exchanged(e, still) for e in self.balances])
         reduced = eliminate(matrix, right)
@@ -284,13 +281,33 @@ class NewtonEuler:
             if load.body != i:
                 continue
             arms: list[Sequence[Expr]] = [load.torque] if load.torque else []
-            if load.at is not None:
+            if load.at is not None and load.force:
                 d = [a - b for a, b in zip(load.at, centre, strict=True)]
                 F = load.force
                 arms.append([d[0] * F[1] - d[1] * F[0]] if axes == 1 else cross(d, F))
             for arm in arms:
                 total = [a + b for a, b in zip(total, arm, strict=True)]
         return total
+
+
+def _check_dimensions(load: Load, body: Body) -> None:
+    dimension, axes = len(body.r), body.inertia.rows
+    given = {"a force": load.force, "a force at a point": load.at or ()}
+    for what, components in given.items():
+        if components and len(components) != dimension:
+            raise ValueError(
+                f"{what} of {counted(len(components), 'component')} "
+                f"on body {load.body}, whose position has {dimension}; give as many"
+            )
+    if load.torque and axes == 0:
+        raise ValueError(
+            f"a torque acts on body {load.body}, a particle, which does not turn; make it a PlanarBody or a RigidBody"
+        )
+    if load.torque and len(load.torque) != axes:
+        raise ValueError(
+            f"a torque of {counted(len(load.torque), 'component')} on body {load.body}, which turns about "
+            f"{counted(axes, 'axis', 'axes')}; give as many"
+        )
 
 
 def _plain_load(load: Load, q: tuple[Symbol, ...], t: Symbol) -> Load:

@@ -54,6 +54,11 @@ class Kinematics:
     t
         The time.
 
+    Raises
+    ------
+    ValueError
+        Where coordinates or quasi-velocities repeat, or q̇ is not of each, by q, u and t alone.
+
     Examples
     --------
     A blade that moves forwards with u and turns with w:
@@ -84,6 +89,9 @@ class Kinematics:
         object.__setattr__(self, "u", natural if u is None else tuple(coordinate(w) for w in u))
         check_none_reads_as_the_time((*self.q, *self.u), "Kinematics(q, u, q_dot", t)
         object.__setattr__(self, "t", t)
+        for what, symbols in (("coordinates", self.q), ("quasi-velocities", self.u)):
+            if len({*symbols}) < len(symbols):
+                raise ValueError(f"the {what} {symbols} are not all different; name each once")
         rates = self.u if q_dot is None else tuple(self.plain(f) for f in as_tuple(q_dot))
         object.__setattr__(self, "q_dot", rates)
         if len(self.q_dot) != len(self.q):
@@ -91,6 +99,13 @@ class Kinematics:
                 f"{counted(len(self.q_dot), 'rate')} for {counted(len(self.q), 'coordinate')}; "
                 "give q̇ of each as a function of u"
             )
+        foreign = {*natural} - {*self.u}
+        for s, f in zip(self.q, self.q_dot, strict=True):
+            if held := sorted(map(str, foreign & f.free_symbols)):
+                raise ValueError(
+                    f"the rate {f} of {s} holds {', '.join(held)}, which is no quasi-velocity; give q̇ of each by "
+                    f"{', '.join(map(str, self.u))} alone"
+                )
 
     @cached_property
     def u_dot(self) -> tuple[Symbol, ...]:
@@ -139,7 +154,14 @@ class Kinematics:
         return rates | {acceleration(s): a for s, a in zip(self.q, self.q_ddot, strict=True)}
 
     def satisfy(self, constrained: ConstrainedLagrangian, domain: Domain | None = None) -> Verdict:
-        """Tell whether every q̇(q, u, t) satisfies the constraints on the velocities, whatever u."""
+        """Tell whether every q̇(q, u, t) satisfies the constraints on the velocities, whatever u.
+
+        Raises
+        ------
+        ValueError
+            Where they bind other coordinates.
+        """
+        _check_same_coordinates(constrained.lagrangian, self)
         claims = [(f"{rate} = 0", self.along(rate)) for rate in constrained.rates]
         return all_vanish(claims, "the quasi-velocities satisfy the constraints", domain)
 
@@ -190,12 +212,27 @@ def independent_velocities(
     return Kinematics(q, list(kept), [{**kept, **rates}[velocity(s)] for s in q], constrained.lagrangian.t)
 
 
+def _check_same_coordinates(lagrangian: Lagrangian, kinematics: Kinematics) -> None:
+    if {*lagrangian.q} != {*kinematics.q}:
+        raise ValueError(
+            f"the Lagrangian is of the coordinates {lagrangian.q}, the kinematics of {kinematics.q}; write both in "
+            "the same"
+        )
+
+
 def maggi_equations(lagrangian: Lagrangian, kinematics: Kinematics) -> tuple[Expr, ...]:
     """Return Maggi's equations, each expression = 0: Σ (d/dt ∂L/∂q̇ − ∂L/∂q − Q) ∂q̇/∂u.
 
     They hold no reaction of constraints that the kinematics satisfies.
+
+    Raises
+    ------
+    ValueError
+        Where the kinematics is of other coordinates; their order may differ.
     """
-    lagrange = [kinematics.along(e) for e in lagrangian.equations]
+    _check_same_coordinates(lagrangian, kinematics)
+    equations = dict(zip(lagrangian.q, lagrangian.equations, strict=True))
+    lagrange = [kinematics.along(equations[s]) for s in kinematics.q]
     B = kinematics.basis
     return tuple(
         sp.Add(*(e * entry(B, i, j) for i, e in enumerate(lagrange))) for j in range(len(kinematics.u))
@@ -209,6 +246,8 @@ def maggi_accelerations(lagrangian: Lagrangian, kinematics: Kinematics) -> tuple
     ------
     SingularMatrixError
         Where L does not determine them.
+    ValueError
+        Where the kinematics is of other coordinates.
     """
     equations = maggi_equations(lagrangian, kinematics)
     return tuple(

@@ -9,6 +9,7 @@ Multibody Dynamics with Unilateral Contacts, Wiley 1996, ch. 8).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from operator import index
 from typing import TYPE_CHECKING, Any
 
 from canon.expression.symbols.symbol import velocity
@@ -103,6 +104,11 @@ class UnilateralLagrangian:
     def closed(self, *which: int) -> ConstrainedLagrangian:
         """Return the system while the contacts of these numbers, counted from 1, are closed and the others open.
 
+        Raises
+        ------
+        ValueError
+            Where there is no contact of a number.
+
         Examples
         --------
         >>> from canon import Lagrangian, coordinates
@@ -111,6 +117,11 @@ class UnilateralLagrangian:
         >>> UnilateralLagrangian(Lagrangian(y.dot**2 / 2 - y, [y]), [y]).closed(1).multipliers
         (1,)
         """
+        count = len(self.unilateral)
+        if missing := [i for i in which if index(i) not in range(1, count + 1)]:
+            raise ValueError(
+                f"no contact has the number {missing[0]}; there {'is' if count == 1 else 'are'} {count}, counted from 1"
+            )
         bound = self.system
         given = bound.holonomic if isinstance(bound, ConstrainedLagrangian) else ()
         rates = bound.nonholonomic if isinstance(bound, ConstrainedLagrangian) else ()

@@ -5,13 +5,14 @@ With d/dt ∂L/∂q̇ − ∂L/∂q = Q + λ ∂f/∂q the contact needs λ ≥ 
 
 from __future__ import annotations
 
+from operator import index
 from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.expression.symbols.symbol import time_derivative, velocity
-from canon.mechanics.algebra.all_vanish import differ
+from canon.mechanics.algebra.all_vanish import differ, is_quadratic_in
 from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain_places
 from canon.mechanics.algebra.substitution import exchanged, substitute
 from canon.mechanics.reduction.eliminate_constraints import embedded, satisfies
@@ -46,8 +47,11 @@ def multiplier_in_contact(
     Raises
     ------
     ValueError
-        Where the positions do not satisfy the constraints.
+        Where the positions do not satisfy the constraints, or there is no constraint of this number.
     """
+    count = constrained.directions.rows
+    if index(which) not in range(count):
+        raise ValueError(f"no constraint has the number {which}; there are {count}, counted from 0")
     q = coordinate_symbols(q)
     verdict = satisfies(constrained, places, q)
     if not verdict.holds:
@@ -90,8 +94,8 @@ def multiplier_along(
     Raises
     ------
     ValueError
-        Where Jacobi's energy is not conserved, one of the others is not ignorable, or λ depends on the direction of
-        motion.
+        Where Jacobi's energy is not conserved, one of the others is not ignorable, λ depends on the direction of
+        motion or is no polynomial in the velocity, or there is no constraint of this number.
 
     Examples
     --------
@@ -119,7 +123,7 @@ def multiplier_along(
     v, E = velocity(s), exchanged(reduced.jacobi_energy, conserved)
     at_rest = exchanged(E, {v: sp.S.Zero})
     quadratic = E.diff(v, 2) / 2
-    if quadratic.has(v):
+    if not is_quadratic_in(E, [v], domain):
         raise ValueError(
             f"the energy {E} is not quadratic in {v}, so {v}² does not follow from it alone; take multiplier_in_contact"
         )
@@ -136,8 +140,13 @@ def multiplier_along(
         raise ValueError(
             f"the multiplier {multiplier} depends on the direction of motion; take multiplier_in_contact"
         )
-    rest, factor = exchanged(multiplier, {v: sp.S.Zero}), multiplier.diff(v, 2) / 2
-    return sp.factor_terms(rest + factor * squared)
+    if not multiplier.is_polynomial(v):
+        raise ValueError(
+            f"the multiplier {multiplier} is no polynomial in {v}, so {v}² does not determine it; take "
+            "multiplier_in_contact"
+        )
+    terms = sp.Poly(multiplier, v).terms()  # even in v, as was seen: odd ones vanish
+    return sp.factor_terms(sp.Add(*(a * squared ** (k // 2) for (k,), a in terms if k % 2 == 0)))
 
 
 def _conserves_energy(reduced: Lagrangian, domain: Domain | None) -> None:

@@ -14,6 +14,7 @@ from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain_pla
 from canon.mechanics.algebra.linear import eliminate, solve
 from canon.mechanics.algebra.substitution import entry, exchanged, substitute
 from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.proof.trees.affine_form import is_affine
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -121,7 +122,7 @@ def eliminated(
             f"{counted(len(dependent), 'coordinate')}; name as many as there are constraints"
         )
     matrix = sp.Matrix([[f.diff(s) for s in dependent] for f in constrained.holonomic])
-    if matrix.has(*dependent):
+    if not all(is_affine(f, dependent) for f in constrained.holonomic):
         raise ValueError(
             f"the constraints are not affine in {', '.join(map(str, dependent))}; choose other coordinates, "
             "or give the positions in new coordinates to embedded()"

@@ -7,30 +7,36 @@ coordinate counted along c is ignorable (E. T. Whittaker, Analytical Dynamics, �
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, cast
 
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.expression.symbols.symbol import Coordinate, velocity
+from canon.expression.symbols.symbol import Coordinate, acceleration, velocity
 from canon.mechanics.algebra.all_vanish import all_vanish
 from canon.mechanics.algebra.dynamicsymbols import coordinate as symbol_of
 from canon.mechanics.algebra.linear import eliminate
-from canon.mechanics.algebra.substitution import exchanged
+from canon.mechanics.algebra.substitution import exchanged, substitute
 from canon.mechanics.lagrange.lagrangian import Lagrangian
+from canon.proof.continuity.smooth import PIECED
+from canon.proof.domain.domain import Domain, as_domain
+from canon.proof.domain.verdict import all_hold
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from canon.proof.domain.domain import Domain
+    from sympy.logic.boolalg import Boolean
+
     from canon.proof.domain.verdict import Verdict
 
 __all__ = ["Adapted", "adapted", "ignorable_coordinates", "ignorable_directions", "is_ignorable"]
 
 
 def is_ignorable(lagrangian: Lagrangian, coordinate: Symbol, domain: Domain | None = None) -> Verdict:
-    """Tell whether ∂L/∂q = 0 and no generalized force acts along q or depends on it.
+    """Tell whether L does not depend on q and no generalized force acts along q or depends on it.
+
+    That ∂L/∂q = 0 is not enough: the slope of sign q vanishes on both sides of the step.
 
     Raises
     ------
@@ -48,7 +54,23 @@ def is_ignorable(lagrangian: Lagrangian, coordinate: Symbol, domain: Domain | No
         if s == coordinate:
             claims.append((f"no force acts along {coordinate}", force))
         claims.append((f"the force along {s} does not depend on {coordinate}", force.diff(coordinate)))
-    return all_vanish(claims, f"{coordinate} is ignorable", domain)
+    verdict = all_vanish(claims, f"{coordinate} is ignorable", domain)
+    changing = [f for f in (lagrangian.L, *lagrangian.forces) if f.has(coordinate)]
+    elsewhere = sp.Dummy(coordinate.name, **coordinate.assumptions0)
+    return _and_steady(verdict, changing, {coordinate: elsewhere}, domain)
+
+
+def _and_steady(
+    verdict: Verdict, functions: Sequence[Expr], moved: Mapping[Symbol, Expr], domain: Domain | None
+) -> Verdict:
+    """Return the verdict on functions whose slopes vanish, once it is seen that they have the same values elsewhere."""
+    if not verdict.holds or not functions:
+        return verdict
+    here = as_domain(domain)
+    there = tuple(cast("Boolean", c.xreplace(moved)) for c in here.conditions if c.has(*moved))
+    both = replace(here, conditions=(*here.conditions, *there))
+    claims = [(f"{f} has one value", substitute(f, moved) - f) for f in functions]
+    return all_hold([verdict, all_vanish(claims, verdict.question, both)], verdict.question)
 
 
 def ignorable_coordinates(lagrangian: Lagrangian, domain: Domain | None = None) -> tuple[Symbol, ...]:
@@ -135,9 +157,12 @@ def adapted(lagrangian: Lagrangian, domain: Domain | None = None) -> Adapted:
     ignored = tuple(lagrangian.q[j] for j in kept)
     new = [renamed.get(s, s) for s in lagrangian.q]
     rates = {velocity(s): sp.Add(*(e.diff(x) * velocity(x) for x in new)) for s, e in shares.items()}
+    through = rates | {
+        acceleration(s): sp.Add(*(e.diff(x) * acceleration(x) for x in new)) for s, e in shares.items()
+    }
     at_origin = dict.fromkeys(ignored, sp.S.Zero)
     places = {s: exchanged(e, at_origin) for s, e in shares.items()}
-    L, *forces = (exchanged(e, {**places, **rates}) for e in (lagrangian.L, *lagrangian.forces))
+    L, *forces = (exchanged(e, {**places, **through}) for e in (lagrangian.L, *lagrangian.forces))
     projected = [
         sp.Add(*(Q * shares[s].diff(x) for s, Q in zip(lagrangian.q, forces, strict=False))) for x in new
     ]
@@ -165,9 +190,14 @@ def _along(lagrangian: Lagrangian, c: Sequence[Expr], domain: Domain | None) -> 
         for s, Q in zip(lagrangian.q, lagrangian.forces, strict=False)
     ]
     work = sp.Add(*(factor * Q for factor, Q in zip(c, lagrangian.forces, strict=False)))
-    return all_vanish(
+    verdict = all_vanish(
         [*claims, ("no force acts", work)], f"L is constant along ({', '.join(map(str, c))})", domain
     )
+    step = sp.Dummy("step", real=True)
+    moved = {s: s + factor * step for s, factor in zip(lagrangian.q, c, strict=True) if factor != 0}
+    functions = (lagrangian.L, *lagrangian.forces)
+    in_pieces = [f for f in functions if any(piece.has(*moved) for piece in f.atoms(*PIECED))]
+    return _and_steady(verdict, in_pieces, moved, domain)
 
 
 def _constant_combinations(slopes: Sequence[Expr], lagrangian: Lagrangian) -> tuple[tuple[Expr, ...], ...]:

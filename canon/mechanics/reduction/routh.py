@@ -14,7 +14,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.cached_property import cached_property
-from canon.expression.symbols.symbol import momentum, time, velocity
+from canon.expression.symbols.symbol import acceleration, momentum, time, time_derivative, velocity
 from canon.expression.symbols.user_input import counted, given_kind
 from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain_places
 from canon.mechanics.algebra.substitution import exchanged, substitute
@@ -116,9 +116,17 @@ class Routhian:
         -------
         tuple of sympy.Expr
             Integrals that SymPy's tables do not have stay as ``Integral``.
+
+        Raises
+        ------
+        ValueError
+            Where a remaining coordinate has no motion, or an ignorable one no start.
         """
         motion = plain_places(motion, self.q, self.ignorable, self.t)
         start = plain_places(start, self.q, self.ignorable, self.t)
+        for what, known, needed in (("motion", motion, self.q), ("start", start, self.ignorable)):
+            if missing := [str(s) for s in needed if s not in known]:
+                raise ValueError(f"no {what} is given of {', '.join(missing)}; give one of each")
         along = {s: motion[s] for s in self.q} | {velocity(s): motion[s].diff(self.t) for s in self.q}
         return tuple(
             start[s] + _integral_from_zero(substitute(rate, along), self.t)
@@ -219,12 +227,12 @@ def routhian(
         raise ValueError(f"convention {convention!r} is unknown; write 'L-pq' or 'pq-L'")
     given_kind(lagrangian, Lagrangian, "what routhian() reduces")
     ignored, p = _ignored(lagrangian, ignorable, momenta, domain)
-    rest = tuple(s for s in lagrangian.q if s not in ignored)
+    rest, t = tuple(s for s in lagrangian.q if s not in ignored), lagrangian.t
     pairs = dict(zip(lagrangian.q, lagrangian.forces, strict=False))
     forces = tuple(pairs[s] for s in rest) if pairs else ()
     if not ignored:
         same = lagrangian.L if convention == "L-pq" else -lagrangian.L
-        return Routhian(same, rest, (), (), convention, forces, lagrangian.t)
+        return Routhian(same, rest, (), (), convention, forces, t)
     velocities = [velocity(s) for s in ignored]
     # The shortest diagonal entry of the Hessian first: the pivots after it stay short.
     order = sorted(range(len(ignored)), key=lambda i: int(sp.count_ops(lagrangian.L.diff(velocities[i], 2))))
@@ -237,10 +245,19 @@ def routhian(
         "ignorable velocities",
     )
     R = -negative if convention == "L-pq" else negative
-    if forces:
-        through = dict(zip(velocities, (negative.diff(x) for x in p), strict=True))
-        forces = tuple(exchanged(Q, through) for Q in forces)
-    return Routhian(R, rest, ignored, p, convention, forces, lagrangian.t)
+    forces = _without_ignored(forces, {s: negative.diff(x) for s, x in zip(ignored, p, strict=True)}, rest, t)
+    return Routhian(R, rest, ignored, p, convention, forces, t)
+
+
+def _without_ignored(
+    forces: Sequence[Expr], rates: Mapping[Symbol, Expr], rest: Sequence[Symbol], t: Symbol
+) -> tuple[Expr, ...]:
+    """Return forces in which the ignored velocities are these rates, and their accelerations what these make them."""
+    if not forces:
+        return ()
+    through = {velocity(s): rate for s, rate in rates.items()}
+    through |= {acceleration(s): time_derivative(rate, rest, t) for s, rate in rates.items()}
+    return tuple(exchanged(Q, through) for Q in forces)
 
 
 def _ignored(

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.expression.symbols.symbol import momentum
+from canon.expression.symbols.symbol import acceleration, momentum
 from canon.expression.symbols.user_input import counted
 from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols
 from canon.mechanics.algebra.linear import SingularMatrixError, eliminate
@@ -94,7 +94,8 @@ def singularity(
     Raises
     ------
     ValueError
-        Where L is not quadratic in the velocities and the constraints were not found in closed form.
+        Where L is not quadratic in the velocities and the constraints were not found in closed form, or L is singular
+        and forces hold accelerations.
 
     Examples
     --------
@@ -123,6 +124,12 @@ def singularity(
     null = reduced.null_directions
     if not null:
         return Singularity(reduced.rank, (), (), (), lagrangian.q)
+    accelerations = [acceleration(s) for s in lagrangian.q]
+    if any(Q.has(*accelerations) for Q in lagrangian.forces):
+        raise ValueError(
+            f"L is singular, but forces hold accelerations ({', '.join(map(str, accelerations))}), so the combinations "
+            "along its null directions hold them too; look at lagrangian.inertia and lagrangian.accelerations"
+        )
     motion = tuple(_simplest(_along(n, lagrangian.bias), domain) for n in null)
     if lagrangian.mass_matrix.has(*lagrangian.velocities):
         primary, H = _by_elimination(lagrangian, symbols, reduced.rank, domain)
