@@ -10,7 +10,7 @@ import numpy as np
 from canon.cached_property import cached_property
 from canon.expression.symbols.user_input import counted
 from canon.flow.equations.contact_regimes import seen_by_people
-from canon.flow.estimate.error_estimate import ErrorEstimate, error_estimate
+from canon.flow.estimate.error_estimate import ErrorEstimate, chosen_orbits, error_estimate
 from canon.flow.interpolation import states_at
 from canon.flow.record_file import write_record
 from canon.flow.run.labelled_motion import labelled
@@ -279,6 +279,11 @@ class Trajectory:
         orbits
             Which orbits of many to estimate; all of them where not given.
 
+        Raises
+        ------
+        ValueError
+            The motion has no such orbit, or is that of a map.
+
         Examples
         --------
         >>> from canon import Hamiltonian, Splitting, coordinates, propagate
@@ -292,6 +297,8 @@ class Trajectory:
         """
         record = self.record
         change = np.zeros(self.y.shape[1:]) if self.energies is None else self.energies.defect
+        if orbits is not None:
+            orbits = chosen_orbits(orbits, change.shape[1] if change.ndim == 2 else 1)
         return error_estimate(record.task, record.with_events_of(orbits), change, orbits)
 
     def to_xarray(self) -> xarray.Dataset:

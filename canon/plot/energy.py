@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.plot.case_labels import error_symbol, labels_of
 from canon.plot.phase import several
 from canon.plot.style import COLOURS, GREY, LINES, label_ends, logarithmic, new_axes, tidy
 from canon.study.energy_drift.envelope import envelope_of
@@ -200,12 +201,15 @@ def _lines(of: DriftStudy | Trajectory | Sequence[Trajectory] | Sequence[Result]
         (of_study if isinstance(each, Result) else motions).append(each)
     if of_study:
         drawn = [result for result in of_study if result.numbers.get("curve")]
+        symbol, (motions, settings) = error_symbol(drawn), labels_of(drawn)
+        several_of = [f"{each}; " for each in motions] if len(set(motions)) > 1 else [""] * len(drawn)
         return _Lines(
             [
-                _Line(f"{result.setting}: {result.numbers['verdict']}", *_arrays(result.numbers["curve"]))
-                for result in drawn
+                _Line(f"{motion}{setting}: {result.numbers['verdict']}", *_arrays(result.numbers["curve"]))
+                for result, motion, setting in zip(drawn, several_of, settings, strict=True)
             ],
-            relative=all(result.numbers["relative"] for result in drawn),
+            relative="/" in symbol,
+            observables=("energy",) if "E" in symbol else (),
         )
     lines = [
         line

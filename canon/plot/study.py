@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.expression.symbols.user_input import counted
+from canon.plot.case_labels import error_symbol, labels_of
 from canon.plot.style import GREY, PlotError, new_axes
 from canon.study.cases.result import State
 
@@ -36,8 +37,8 @@ def plot_study_heatmap(results: Sequence[Result], ax: Axes | None = None, *, wha
     ax
         Where to draw; a new figure, as large as the table needs, if left out.
     what
-        ``"bound"`` for the largest ``|ΔE/E|``, ``"slope"`` for the drift's size per unit of time, ``"seconds"`` for
-        the processor time.
+        ``"bound"`` for the largest ``|ΔE/E|`` (``|ΔE|`` where one is absolute), ``"slope"`` for the drift's size per
+        unit of time, ``"seconds"`` for the processor time.
 
     Raises
     ------
@@ -60,20 +61,25 @@ def plot_study_heatmap(results: Sequence[Result], ax: Axes | None = None, *, wha
         raise ValueError(f"what={what!r}: there are bound, slope, seconds")
     if not results:
         raise ValueError("there is no case to draw: give results of a study, results_of(file)")
-    rows = list(dict.fromkeys(result.motion for result in results))
-    columns = list(dict.fromkeys(result.setting for result in results))
+    labels = labels_of(results)
+    rows, columns = (list(dict.fromkeys(each)) for each in labels)
+    places = [(columns.index(c), rows.index(r)) for r, c in zip(*labels, strict=True)]
     axes = ax if ax is not None else _sized_axes(len(rows), len(columns))
     values = np.full((len(rows), len(columns)), np.nan)
-    for result in results:
+    for result, (x, y) in zip(results, places, strict=True):
         if result.state is State.FINISHED:
+<<<<<<< HEAD
             size = result.seconds if what == "seconds" else _size(result.numbers, what)
             values[rows.index(result.motion), columns.index(result.setting)] = size or np.nan
+=======
+            size = result.seconds if what == "seconds" else abs(result.numbers[what])
+            values[y, x] = size or np.nan
+>>>>>>> cb7009e92d10716a0aae16e4361d80fadf13b195
     if np.isfinite(values).any():
-        _colour(axes, values, what)
+        _colour(axes, values, what, error_symbol(results))
     else:
         axes.set_aspect("auto")
-    for result in results:
-        place = columns.index(result.setting), rows.index(result.motion)
+    for result, place in zip(results, places, strict=True):
         _mark(axes, result, *place, empty=bool(np.isnan(values[place[1], place[0]])))
     _name(axes, rows, columns)
     count = {state: sum(result.state is state for result in results) for state in State}
@@ -96,7 +102,7 @@ def _sized_axes(rows: int, columns: int) -> Axes:
     return axes
 
 
-def _colour(axes: Axes, values: np.ndarray, what: str) -> None:
+def _colour(axes: Axes, values: np.ndarray, what: str, error: str) -> None:
     from matplotlib.colors import LogNorm
 
     low, high = np.nanmin(values), np.nanmax(values)
@@ -106,8 +112,8 @@ def _colour(axes: Axes, values: np.ndarray, what: str) -> None:
     if figure is None:
         raise PlotError("the Axes belong to no figure; make them with plt.subplots()")
     label = {
-        "bound": "largest |ΔE/E|",
-        "slope": "|drift of ΔE/E| per unit of time",
+        "bound": f"largest |{error}|",
+        "slope": f"|drift of {error}| per unit of time",
         "seconds": "processor time (s)",
     }
     figure.colorbar(image, ax=axes, label=label[what], fraction=0.05, pad=0.02)

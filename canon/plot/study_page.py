@@ -9,6 +9,7 @@ from html import escape
 from typing import TYPE_CHECKING
 
 from canon.expression.symbols.user_input import counted
+from canon.plot.case_labels import error_symbol, labels_of
 from canon.plot.energy import plot_block_means, plot_energy_error
 from canon.plot.study import plot_study_heatmap
 from canon.plot.style import LINES
@@ -51,8 +52,8 @@ tr.pending td { color: #767676; }
 @media print { body { max-width: none; } h2 { break-before: page; } }
 """
 
-COLUMNS = ("motion", "method", "verdict", "max |ΔE/E|", "drift per unit of time", "exponent", "steps", "evaluations",
-           "seconds")  # fmt: skip
+COLUMNS = ("motion", "method", "verdict", "max |{error}|", "drift per unit of time", "exponent", "steps",
+           "evaluations", "seconds")  # fmt: skip
 
 
 def study_report(results: Sequence[Result], title: str, seconds: float | None = None) -> str:
@@ -117,21 +118,25 @@ def _summary(results: Sequence[Result]) -> Iterator[str]:
         yield f"<p>{counted(count, 'case')} computed with {escape(named)}.</p>"
     failed = [result for result in results if result.state is State.FAILED]
     if failed:
+        pairs = zip(results, *labels_of(results), strict=True)
+        said = {id(result): escape(f"{motion}, {setting}") for result, motion, setting in pairs}
         yield "<h2>What failed, and why</h2><ul>"
         for result in failed:
-            yield f"<li>{escape(result.motion)}, {escape(result.setting)}: {escape(result.failure)}</li>"
+            yield f"<li>{said[id(result)]}: {escape(result.failure)}</li>"
         yield "</ul>"
 
 
 def _motions(results: Sequence[Result]) -> Iterator[str]:
     """Yield the figures of each motion that has a finished case."""
-    finished = [result for result in results if result.state is State.FINISHED]
-    names = list(dict.fromkeys(result.motion for result in finished))
-    for name in names[:MOTIONS]:
+    finished: dict[str, list[Result]] = {}
+    for result, name in zip(results, labels_of(results)[0], strict=True):
+        if result.state is State.FINISHED:
+            finished.setdefault(name, []).append(result)
+    for name in list(finished)[:MOTIONS]:
         yield f"<h2>{escape(name)}</h2>"
-        yield from _figures([result for result in finished if result.motion == name], name)
-    if len(names) > MOTIONS:
-        yield f"<p>Figures are shown of the first {MOTIONS} of {len(names)} motions; the table has all.</p>"
+        yield from _figures(finished[name], name)
+    if len(finished) > MOTIONS:
+        yield f"<p>Figures are shown of the first {MOTIONS} of {len(finished)} motions; the table has all.</p>"
 
 
 def _figures(results: Sequence[Result], name: str) -> Iterator[str]:
@@ -149,7 +154,8 @@ def _figures(results: Sequence[Result], name: str) -> Iterator[str]:
     secular = [result for result in results if result.numbers["verdict"] == "secular"]
     for result in sorted(secular, key=_significance, reverse=True)[:DRIFTS]:
         yield f"<h3>{escape(result.setting)}</h3>"
-        yield _figure(plot_block_means(result), f"fitted drift of {result.setting}")
+        means = plot_block_means(result, label=error_symbol([result]))
+        yield _figure(means, f"fitted drift of {result.setting}")
 
 
 def _significance(result: Result) -> float:
@@ -158,10 +164,12 @@ def _significance(result: Result) -> float:
 
 def _table(results: Sequence[Result]) -> Iterator[str]:
     yield '<div class="scroll"><table><thead><tr>'
-    yield "".join(f"<th{_text(i)}>{escape(name)}</th>" for i, name in enumerate(COLUMNS))
+    heads = [escape(name.format(error=error_symbol(results))) for name in COLUMNS]
+    yield "".join(f"<th{_text(i)}>{name}</th>" for i, name in enumerate(heads))
     yield "</tr></thead><tbody>"
-    for result in results:
-        cells = "".join(f"<td{_text(i)}>{escape(cell)}</td>" for i, cell in enumerate(_cells(result)))
+    for result, *names in zip(results, *labels_of(results), strict=True):
+        row = (*names, *_cells(result))
+        cells = "".join(f"<td{_text(i)}>{escape(cell)}</td>" for i, cell in enumerate(row))
         yield f'<tr class="{result.state.value}">{cells}</tr>'
     yield "</tbody></table></div>"
 
@@ -170,12 +178,10 @@ def _cells(result: Result) -> Sequence[str]:
     seconds = "" if result.seconds is None else f"{result.seconds:.3g}"
     if result.state is not State.FINISHED:
         told = f"{100 * result.done:.0f} % done" if result.state is State.PENDING else result.failure
-        return (result.motion, result.setting, f"{result.state.value}: {told}", "", "", "", "", "", seconds)
+        return (f"{result.state.value}: {told}", "", "", "", "", "", seconds)
     numbers = result.numbers
     low, high = numbers["exponent_interval"]
     return (
-        result.motion,
-        result.setting,
         numbers["verdict"],
         f"{numbers['bound']:.2e}",
         f"{numbers['slope']:.1e} ± {numbers['slope_error']:.0e}",

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from canon.plot.case_labels import labels_of
 from canon.plot.style import COLOURS, GREY, LINES, MARKERS, logarithmic, new_axes, tidy
 from canon.study.method_choice.resonance import resonant_steps
 
@@ -107,7 +108,8 @@ def plot_drift_by_step(
     Parameters
     ----------
     of
-        Work–precision runs, rows of drift studies, or cases of a study of one motion.
+        Work–precision runs, rows of drift studies, or cases of a study, of which each motion has lines
+        of its own.
     ax
         Where to draw; a new figure if left out.
     what
@@ -175,8 +177,23 @@ def _points(of: WorkPrecision | Sequence[DriftRow] | Sequence[Result], what: str
         family = _families(of.rows)
         found = [_Point(family[k], row.step or 0.0, row.energy_error) for k, row in enumerate(of.rows)]
     else:
-        found = [point for each in of if (point := _point_of_drift(each, what)) is not None]
+        drawn = [(each, point) for each in of if (point := _point_of_drift(each, what)) is not None]
+        motions = _motions([each for each, _ in drawn])
+        found = [
+            replace(point, name=f"{motion}{point.name}")
+            for (_, point), motion in zip(drawn, motions, strict=True)
+        ]
     return [point for point in found if point.step > 0.0 and point.size > 0.0]
+
+
+def _motions(of: Sequence[DriftRow | Result]) -> list[str]:
+    """Return what stands before the method of each: its motion, where they are cases of several."""
+    from canon.study.cases.result import Result
+
+    results = [each for each in of if isinstance(each, Result)]
+    if len(results) < len(of) or len({result.case.what_moves for result in results}) < 2:
+        return [""] * len(of)
+    return [f"{motion}: " for motion in labels_of(results)[0]]
 
 
 def _point_of_drift(of: DriftRow | Result, what: str) -> _Point | None:

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.display import preformatted
+from canon.expression.symbols.user_input import counted
 from canon.flow.estimate.companion import BESIDE, companion_tasks, companions
 from canon.flow.run.observables_along import energy_rounding, jumped
 from canon.flow.run.running_error import rounding_of_rates, sizes_of_rates
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from canon.flow.task import Task
     from canon.kernel.program.hamilton_equations import HamiltonEquations
 
-__all__ = ["ErrorEstimate", "error_estimate"]
+__all__ = ["ErrorEstimate", "chosen_orbits", "error_estimate"]
 
 _SAFETY = 2.0
 """The error is stated so many times larger than it was found: the companion errs too."""
@@ -147,7 +148,7 @@ def error_estimate(
     energy_change
         H − H(start) at the samples, shape (times,) or (times, orbits).
     orbits
-        Which orbits of many to estimate.
+        Which orbits of many to estimate (:func:`chosen_orbits`).
 
     Raises
     ------
@@ -203,6 +204,22 @@ def error_estimate(
         away, relative, condition = away[:, :, 0], relative[:, 0], condition[:, 0]
     events = _event_errors(samples, found)
     return ErrorEstimate(samples.t, away, relative, condition, events, words)
+
+
+def chosen_orbits(orbits: Sequence[int], many: int) -> list[int]:
+    """Return which of many orbits are meant.
+
+    Raises
+    ------
+    ValueError
+        There is no orbit of a number, or the list is empty.
+    """
+    chosen = list(orbits)
+    if not chosen or any(each not in range(many) for each in chosen):
+        raise ValueError(
+            f"orbits={chosen}: the motion has {counted(many, 'orbit')}, counted from 0; choose some of 0 … {many - 1}"
+        )
+    return chosen
 
 
 def _contradicted_by_energy(

@@ -120,6 +120,11 @@ class Case:
         return Setting(self.method, self.step, self.tolerance, self.precision)
 
     @property
+    def what_moves(self) -> tuple[Any, ...]:
+        """System, start and parameters: what all methods are compared on."""
+        return self.system, self.start, self.parameters
+
+    @property
     def system_name(self) -> str:
         """What the system is called."""
         return self.system if isinstance(self.system, str) else self.system.name

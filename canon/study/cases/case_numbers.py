@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from canon.array import Array
     from canon.study.energy_drift.drift import Drift
     from canon.study.motion.observables import Observable
+    from canon.study.motion.term_sizes import TermSizes
 
 __all__ = ["judged_energy", "judged_observable"]
 
@@ -23,7 +24,9 @@ CURVE = 64
 """Points of the curve of |ΔE| that is kept of a run."""
 
 
-def judged_energy(t: Array, change: Array, energy: float, steps: int, precision: str) -> dict[str, Any]:
+def judged_energy(
+    t: Array, change: Array, energy: float, run: tuple[int, str], *, relative: bool, sizes: TermSizes
+) -> dict[str, Any]:
     """Return the numbers of the energy error along a run, as JSON can hold them.
 
     Parameters
@@ -32,11 +35,14 @@ def judged_energy(t: Array, change: Array, energy: float, steps: int, precision:
         Times and H − H(start).
     energy
         H(start).
-    steps, precision
-        Of the run: what round-off is expected of it.
+    run
+        Its steps and precision: what round-off is expected of it.
+    relative
+        Whether H(start) is more than rounding, so that the error is relative to it.
+    sizes
+        Of the terms of H along the run.
     """
-    relative = energy != 0.0
-    series = series_of_parts(t, change, abs(energy) if relative else 1.0, steps, precision, relative=relative)
+    series = series_of_parts(t, change, abs(energy) if relative else 1.0, run, relative=relative, sizes=sizes)
     found = judged_series(series)
     curve = envelope_of(t, series.error, CURVE)
     return {
@@ -48,10 +54,10 @@ def judged_energy(t: Array, change: Array, energy: float, steps: int, precision:
 
 
 def judged_observable(
-    t: Array, change: Sequence[float], of: Observable, steps: int, precision: str
+    t: Array, change: Sequence[float], of: Observable, run: tuple[int, str], sizes: TermSizes
 ) -> dict[str, Any]:
     """Return the same for another observable, without curve and means."""
-    series = series_of_parts(t, np.array(change), of.unit, steps, precision, relative=of.relative)
+    series = series_of_parts(t, np.array(change), of.unit, run, relative=of.relative, sizes=sizes)
     return {**_numbers(judged_series(series)), "relative": of.relative}
 
 

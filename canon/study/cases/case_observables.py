@@ -11,7 +11,7 @@ import numpy as np
 from canon.flow.system.recognised_system import recognised
 from canon.scene import find
 from canon.study.errors import StudyError
-from canon.study.motion.hamiltonian_text import Formula, require_labels
+from canon.study.motion.hamiltonian_text import Formula, require_labels, scope_of
 from canon.study.motion.observables import ENERGY, SYMPLECTICITY, Observable, observables_of
 from canon.study.motion.studied_motion import variables_of
 
@@ -84,7 +84,7 @@ def read_formula(case: Case, what: str, text: str) -> Expr:
     StudyError
         It can't be read; the error begins with what it is.
     """
-    from canon.expression.parse import LanguageError, Scope, parse_expression
+    from canon.expression.parse import LanguageError, parse_expression
     from canon.expression.symbols.symbol import parameters
 
     constants: tuple[Symbol, ...]
@@ -98,6 +98,6 @@ def read_formula(case: Case, what: str, text: str) -> Expr:
         constants = (*moving.values(), *(parameters(name) for name in declared))
     symbols = (*variables_of(case.hamiltonian)[0], *constants)
     try:
-        return parse_expression(text, Scope({symbol.name: symbol for symbol in symbols}))
+        return parse_expression(text, scope_of(symbols))
     except LanguageError as error:
         raise StudyError(f"{what}: {error}") from error

@@ -30,8 +30,9 @@ from canon.study.cases.case_observables import followed
 from canon.study.cases.kept_of_case import kept_on_the_way, section_of
 from canon.study.energy_drift.sample_times import is_resolved, scattered
 from canon.study.motion.extended_phase_space import driven
-from canon.study.motion.observables import expressions_of
+from canon.study.motion.observables import ENERGY, expressions_of
 from canon.study.motion.quiet_run import run_quietly
+from canon.study.motion.term_sizes import TermSizes, terms_along
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -91,6 +92,11 @@ class Checkpoint:
         Whether the samples stand at equal distances (:mod:`canon.study.energy_drift.sample_times`).
     kept
         What is to be kept of the parts done (:func:`canon.study.cases.kept_of_case.kept_on_the_way`).
+    relative
+        Whether the energy is more than rounding, so that its error is relative; None of a run begun by a version that
+        did not look, which asks whether it is 0.
+    terms
+        How large the terms of the energy and of the observables are on the parts done, by name.
     """
 
     part: int
@@ -107,6 +113,13 @@ class Checkpoint:
     changes: Mapping[str, tuple[float, ...]] = field(default_factory=dict[str, tuple[float, ...]])
     even: bool = True
     kept: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    relative: bool | None = None
+    terms: Mapping[str, TermSizes] = field(default_factory=dict[str, TermSizes])
+
+    @property
+    def is_relative(self) -> bool:
+        """Whether the energy's error is relative."""
+        return self.energy != 0.0 if self.relative is None else self.relative
 
     def to_text(self) -> str:
         """Return the checkpoint as JSON; floats survive exactly."""
@@ -120,6 +133,7 @@ class Checkpoint:
             fields[name] = tuple(fields[name])
         for name in ("changes", "kept"):
             fields[name] = {of: tuple(x) for of, x in fields.get(name, {}).items()}
+        fields["terms"] = {of: TermSizes(**sizes) for of, sizes in fields.get("terms", {}).items()}
         return Checkpoint(**fields)
 
 
@@ -211,12 +225,15 @@ def _next(case: Case, point: Checkpoint, end: int) -> Checkpoint:
         name: (*(done := point.changes.get(name, ())), *((done[-1] if done else 0.0) + new[first:]).tolist())
         for name, new in found.changes.items()
     }
+    energy, relative = _size(case, found) if point.part == 0 else (point.energy, point.relative)
     return replace(
         point,
         part=point.part + 1,
         state=tuple(found.y[:, -1].tolist()),
         carried=tuple(found.carried[:, -1].tolist()),
-        energy=_size(case, found) if point.part == 0 else point.energy,
+        energy=energy,
+        relative=relative,
+        terms=_terms(case, point, found),
         t=point.t + tuple(found.t[first:].tolist()),
         change=point.change + change[first:],
         changes=changes,
@@ -234,9 +251,23 @@ def _conserved(case: Case, found: Trajectory) -> Array:
     return found.changes[followed(case)[0].name] if found.energies is None else found.energy_defect
 
 
-def _size(case: Case, found: Trajectory) -> float:
-    """Return the energy at the start, or the unit of what takes its place."""
-    return followed(case)[0].unit if found.energies is None else float(found.energy[0])
+def _size(case: Case, found: Trajectory) -> tuple[float, bool]:
+    """Return the energy at the start and whether its error is relative, or the unit of what takes its place."""
+    if found.energies is not None:
+        return float(found.energy[0]), found.relative
+    first = followed(case)[0]
+    return first.unit, first.relative
+
+
+def _terms(case: Case, point: Checkpoint, found: Trajectory) -> dict[str, TermSizes]:
+    """Return how large the terms of the energy and the observables are after one more part."""
+    names = [of.name for of in followed(case)]
+    of_energy = names[0] if found.energies is None else ENERGY
+    each = {ENERGY: of_energy, **dict(zip(names, names, strict=True))}
+    return {
+        name: point.terms.get(name, TermSizes()).with_part(terms_along(found, of))
+        for name, of in each.items()
+    }
 
 
 def _part(case: Case, point: Checkpoint, end: int) -> Trajectory:
@@ -316,10 +347,13 @@ def _whole_steps(case: Case, part: int, end: int) -> tuple[tuple[Fraction, Fract
 
 def _numbers(case: Case, point: Checkpoint) -> dict[str, Any]:
     """Judge a run that reached its end."""
-    t, timed = np.array(point.t), _with_time(case)
-    energy = judged_energy(t, np.array(point.change), point.energy, point.steps, point.precision)
+    t, timed, run = np.array(point.t), _with_time(case), (point.steps, point.precision)
+    sizes = {name: point.terms.get(name, TermSizes()) for name in (ENERGY, *point.changes)}
+    energy = judged_energy(
+        *(t, np.array(point.change), point.energy, run), relative=point.is_relative, sizes=sizes[ENERGY]
+    )
     others = {
-        of.name: judged_observable(t, point.changes[of.name], of, point.steps, point.precision)
+        of.name: judged_observable(t, point.changes[of.name], of, run, sizes[of.name])
         for of in followed(case)
     }
     return {

@@ -55,6 +55,10 @@ _SERIES = (
     ("curve", "t", "point"), ("curve", "largest", "point"), ("curve", "median", "point"),
 )  # fmt: skip
 """Series of numbers that are kept of each case, and the dimension that they lie along."""
+
+_TAKEN = ("final", *(f"{group}_{name}" for group, name, _ in _SERIES))
+"""Variables of a dataset that are no columns of the table."""
+
 LARGEST_VARIABLE = 2**31 - 4
 """Bytes of a variable in a NetCDF file of version 3."""
 
@@ -132,7 +136,9 @@ def write_parquet(given: Store | Results, path: Path) -> None:
 def dataset_of(given: Store | Results) -> xarray.Dataset:
     """Return a study as an xarray dataset along ``case``, block means along ``block``, curves along ``point``.
 
-    Missing numbers are NaN, as NetCDF has it; ``state`` and ``failure`` say why they are missing.
+    Missing numbers are NaN, as NetCDF has it; ``state`` and ``failure`` say why they are missing. Names have the
+    letters that NetCDF files have; of columns that would have one name then, ``L-z bound`` and ``L z bound``, the
+    second is ``L_z_bound_2``.
 
     Raises
     ------
@@ -144,10 +150,10 @@ def dataset_of(given: Store | Results) -> xarray.Dataset:
     except ImportError as missing:
         raise ExportError("NetCDF needs xarray: pip install canon-mechanics[export]") from missing
     rows, results = rows_of(given), _results(given)
+    columns = [name for name in _columns(rows) if name != "final"]
     variables: dict[str, Any] = {
-        _plain(name): ("case", _values(name, [row.get(name) for row in rows]))
-        for name in _columns(rows)
-        if name != "final"
+        plain: ("case", _values(name, [row.get(name) for row in rows]))
+        for name, plain in zip(columns, _plain_names(columns, _TAKEN), strict=True)
     }
     variables["final"] = (("case", "component"), _table([row.get("final") or [] for row in rows]))
     for group, name, dimension in _SERIES:
@@ -190,7 +196,8 @@ def write_kept(results: Results, name: str, path: Path) -> None:
                 f"{each} of all cases has {variable.size * 8:.2g} bytes, and NetCDF files of version 3 hold "
                 f"{LARGEST_VARIABLE:.2g}: write fewer cases a file, by their tags"
             )
-    found.rename({str(each): _plain(str(each)) for each in found.variables}).to_netcdf(path, engine="scipy")
+    names = list(map(str, found.variables))
+    found.rename(dict(zip(names, _plain_names(names), strict=True))).to_netcdf(path, engine="scipy")
 
 
 def _row(result: Result) -> dict[str, Any]:
@@ -227,6 +234,17 @@ def _row(result: Result) -> dict[str, Any]:
 def _plain(name: str) -> str:
     """Return a name in the letters that NetCDF files of version 3 have."""
     return re.sub(r"[^0-9A-Za-z_]+", "_", name)
+
+
+def _plain_names(names: Sequence[str], taken: Sequence[str] = ()) -> list[str]:
+    """Return names in those letters; of several that would be one, all but the first have a number."""
+    found: list[str] = []
+    for name in names:
+        plain, number = _plain(name), 1
+        while (each := plain if number == 1 else f"{plain}_{number}") in (*taken, *found):
+            number += 1
+        found.append(each)
+    return found
 
 
 def _is_text(name: str) -> bool:

@@ -27,7 +27,9 @@ if TYPE_CHECKING:
 
     import xarray
 
-__all__ = ["Result", "Results", "State", "motions_and_settings", "results_of"]
+__all__ = [
+    "Result", "Results", "State", "motion_in_words", "motions_and_settings", "results_of", "setting_in_words",
+]  # fmt: skip
 
 
 OF_RESULTS = ("key", "motion", "setting", "state", "failure", "seconds", "done")
@@ -85,18 +87,27 @@ class Result:
     @property
     def motion(self) -> str:
         """System, parameters and start in words: what all methods are compared on."""
-        start = self.case.start
-        shown = ", ".join(f"{x:g}" for x in start) if isinstance(start, tuple) else start
-        values = ", ".join(f"{name} = {value:g}" for name, value in self.case.parameters)
-        return "; ".join(part for part in (self.case.system_name, values, shown and f"from {shown}") if part)
+        return motion_in_words(self.case)
 
     @property
     def setting(self) -> str:
         """Method, step, tolerance and precision in words."""
-        case = self.case
-        step = f"h = {case.step:.4g}" if case.step is not None else ""
-        tolerance = f"ε = {case.tolerance:.0e}" if case.tolerance is not None else ""
-        return ", ".join(part for part in (str(case.method), step, tolerance, case.precision) if part)
+        return setting_in_words(self.case)
+
+
+def motion_in_words(case: Case, digits: int = 6) -> str:
+    """Return system, parameters and start in words, numbers with so many digits."""
+    start = case.start
+    shown = ", ".join(f"{x:.{digits}g}" for x in start) if isinstance(start, tuple) else start
+    values = ", ".join(f"{name} = {value:.{digits}g}" for name, value in case.parameters)
+    return "; ".join(part for part in (case.system_name, values, shown and f"from {shown}") if part)
+
+
+def setting_in_words(case: Case, digits: int = 4) -> str:
+    """Return method, step, tolerance and precision in words, numbers with so many digits."""
+    step = f"h = {case.step:.{digits}g}" if case.step is not None else ""
+    tolerance = f"ε = {case.tolerance:.{max(0, digits - 5)}e}" if case.tolerance is not None else ""
+    return ", ".join(part for part in (str(case.method), step, tolerance, case.precision) if part)
 
 
 @dataclass(frozen=True)
@@ -112,9 +123,7 @@ class Results(Sequence[Result]):
     rows: tuple[Result, ...]
 
     def __repr__(self) -> str:
-        return (
-            f"<Results: {len(self.rows)} cases of {len(dict.fromkeys(r.motion for r in self.rows))} motions>"
-        )
+        return f"<Results: {len(self.rows)} cases of {len({r.case.what_moves for r in self.rows})} motions>"
 
     def __len__(self) -> int:
         return len(self.rows)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import reprlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -32,7 +32,7 @@ from canon.study.motion.system_table import system_from
 from canon.study.motion.system_text import SystemText, system_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
 
 __all__ = ["Study", "read_study"]
@@ -195,7 +195,7 @@ def _cases(table: Mapping[str, Any], where: str, own: Mapping[str, Formula | Sys
             axes[0] = [table["system"]]
         if math.prod(map(len, (*axes, *map(_listed, parameters.values())))) > MOST_CASES:
             raise ValueError(_TOO_MANY)
-        systems = [_system(each, own, parameters) for each in axes[0]]
+        systems = _told_apart([_system(each, own, parameters) for each in axes[0]])
         for system, values in product(systems, _settings(parameters)):
             for rest in product(*axes[1:]):
                 yield _case(system, values, dict(zip(AXES[1:], rest, strict=True)), table)
@@ -231,6 +231,21 @@ def _system(
             f"the system holds {', '.join(missing)}: give each a value, parameters={{name: value}}"
         )
     return system_text(given, parameters=first)
+
+
+def _told_apart(systems: Sequence[str | Formula | SystemText]) -> list[str | Formula | SystemText]:
+    """Return systems, of different ones with one name, as all that have none, the second as ``NAME 2`` and so on."""
+    named: dict[str, list[str | Formula | SystemText]] = {}
+    found: list[str | Formula | SystemText] = []
+    for system in systems:
+        name = system if isinstance(system, str) else system.name
+        others = named.setdefault(name, [])
+        if system not in others:
+            others.append(system)
+        number = others.index(system) + 1
+        known = isinstance(system, str) or number == 1
+        found.append(system if known else replace(system, name=f"{name} {number}"))
+    return found
 
 
 def _symbols(given: Any) -> Iterable[Any]:

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from canon.expression.graph.number_systems import FLOAT64
+from canon.expression.symbols.user_input import counted
 from canon.flow.method.number_formats import unit_round_off
 from canon.study.motion.observables import ENERGY, Observable
+from canon.study.motion.term_sizes import TermSizes, error_unit, terms_along
 
 if TYPE_CHECKING:
     from canon.array import Array
     from canon.flow.task import Task
     from canon.flow.trajectory import Trajectory
-    from canon.kernel.program.hamilton_equations import HamiltonEquations
 
 __all__ = ["ErrorSeries", "error_series", "series_of_parts"]
 
@@ -25,9 +26,6 @@ FAR_ABOVE = 1e3
 
 BY_AN_EVENT = 1e-6
 """A change of the energy by more than this part of it is no rounding of an event's place."""
-
-LOOKED_AT = 64
-"""States of a motion at which the size of H's terms is looked at."""
 
 
 @dataclass(frozen=True)
@@ -42,8 +40,8 @@ class ErrorSeries:
         Largest size of the error met, between samples too where it was followed inside the loop.
     walk
         Distance that rounding at random makes it walk in the root mean square: u·√n, with u the unit of rounding and n
-        the number of steps, times the size of the terms in which the quantity is linear, Σ|y ∂I/∂y|; None where it is
-        not known, as of a quantity that begins at zero.
+        the number of steps, times the size of the terms in which the quantity is linear, Σ|y ∂I/∂y|; None where that is
+        not known, as of a quantity that begins at zero and has none.
     bias
         Distance that rounding always to one side may take it: u·n times the same.
     resolution
@@ -71,7 +69,7 @@ class ErrorSeries:
 
 
 def series_of_parts(
-    t: Array, change: Array, unit: float, steps: int, precision: str, *, relative: bool
+    t: Array, change: Array, unit: float, run: tuple[int, str], *, relative: bool, sizes: TermSizes
 ) -> ErrorSeries:
     """Return the error series of a run whose samples alone were kept, part by part.
 
@@ -81,14 +79,31 @@ def series_of_parts(
         Times since the start, and changes since then, shape (times,).
     unit
         What the changes are divided by.
-    steps, precision
-        Of the run.
+    run
+        Its steps and its precision.
     relative
-        Whether the error is relative; what rounding does to another is not known.
+        Whether the error is relative to the quantity, or to its terms at the start.
+    sizes
+        Of the quantity's terms along the run.
     """
-    error, u = change / unit, unit_round_off(precision)
-    walk = u * math.sqrt(steps) if relative else None
-    return ErrorSeries(t, error, float(np.abs(error).max()), walk, u * steps, u, relative=relative)
+    error, u = change / unit, unit_round_off(run[1])
+    return _beside_rounding(
+        ErrorSeries(t, error, float(np.abs(error).max()), None, 0.0, u, relative=relative),
+        *(sizes, unit, run[0]),
+    )
+
+
+def _beside_rounding(series: ErrorSeries, sizes: TermSizes, unit: float, steps: float) -> ErrorSeries:
+    """Return a series, whose resolution is the unit u of rounding as yet, with what rounding would do to it."""
+    u, least = series.resolution, 1.0 if series.relative else 0.0
+    size = 1.0 if series.relative else sizes.mean / unit or 1.0
+    return replace(
+        series,
+        walk=u * math.sqrt(steps) * max(least, sizes.square / unit) or None,
+        bias=u * steps * max(least, sizes.mean / unit),
+        resolution=u * size,
+        size=size,
+    )
 
 
 def error_series(
@@ -102,15 +117,15 @@ def error_series(
         A motion that :func:`canon.flow.propagation.propagate` returned.
     observable
         ``"energy"``, or one of the observables that the motion was asked to follow; one of a study brings the unit of
-        its error, which is else its size at the start.
+        its error, which is else its size at the start, or one where that is nothing beside its terms.
     orbit
         Which of many orbits.
 
     Raises
     ------
     ValueError
-        H depends on t or events have changed it, so that its change is no error; there is no such observable; or the
-        motion has many orbits and none is chosen.
+        H depends on t or events have changed it, so that its change is no error; there is no such observable; the
+        motion has many orbits and none is chosen, or no such orbit.
 
     Examples
     --------
@@ -124,36 +139,38 @@ def error_series(
     ('verlet, step 0.1, compensated', True)
     """
     name = observable if isinstance(observable, str) else observable.name
-    change, at_start = _followed(motion, name)
+    change, one = _followed(motion, name), _orbit(motion, orbit)
     many = motion.y.ndim == 3
-    if many and orbit is None:
-        raise ValueError(
-            f"the motion has {motion.y.shape[2]} orbits: say which one to judge, orbit=0 … {motion.y.shape[2] - 1}"
-        )
-    chosen = slice(None) if orbit is None or not many else orbit
-    unit, relative = _unit(motion, observable, abs(float(np.atleast_1d(at_start)[orbit or 0])))
-    t, error = abs(motion.t - motion.t[0]), change[:, chosen] / unit if many else change / unit
+    terms = terms_along(motion, name, one)
+    unit, relative = error_unit(motion, observable, terms, one)
+    t, error = abs(motion.t - motion.t[0]), change[:, one] / unit if many else change / unit
     largest = float(np.abs(error).max())
     if name in motion.statistics:
         seen = motion.statistics[name]
-        mean, size = (part[:, chosen] if many else part for part in (seen.mean, seen.largest))
+        mean, size = (part[:, one] if many else part for part in (seen.mean, seen.largest))
         t, error, largest = (t[1:] + t[:-1]) / 2.0, mean / unit, float(size.max()) / unit
-    u = unit_round_off(motion.precision)
-    terms = _sizes_of_terms(motion, orbit or 0) / unit if name == ENERGY else np.zeros(1)
-    least = 1.0 if relative else 0.0
-    steps = _steps_of_one(motion)
-    walk = u * math.sqrt(steps) * max(least, float(np.sqrt(np.mean(terms**2))))
-    bias = u * steps * max(least, float(np.mean(terms)))
-    tolerance = motion.method.tolerance
+    u, tolerance = unit_round_off(motion.precision), motion.method.tolerance
     truncated = tolerance is not None and tolerance > FAR_ABOVE * u
-    size = _size(terms, relative=relative)
-    return ErrorSeries(
-        t, error, largest, walk or None, bias, u * size, truncated, _way(motion), relative, size
-    )
+    series = ErrorSeries(t, error, largest, None, 0.0, u, truncated, _way(motion), relative)
+    return _beside_rounding(series, TermSizes().with_part(terms), unit, _steps_of_one(motion))
 
 
-def _followed(motion: Trajectory, observable: str) -> tuple[Array, Array]:
-    """Return the changes of a quantity since the start, and its value there."""
+def _orbit(motion: Trajectory, orbit: int | None) -> int:
+    """Return which orbit is meant: the only one where none is chosen."""
+    orbits = motion.y.shape[2] if motion.y.ndim == 3 else 1
+    if orbit is None and motion.y.ndim == 3:
+        raise ValueError(
+            f"the motion has {counted(orbits, 'orbit')}: say which one to judge, orbit=0 … {orbits - 1}"
+        )
+    if orbit is not None and orbit not in range(orbits):
+        raise ValueError(
+            f"orbit={orbit}: the motion has {counted(orbits, 'orbit')}, counted from 0; choose one of 0 … {orbits - 1}"
+        )
+    return int(orbit or 0)
+
+
+def _followed(motion: Trajectory, observable: str) -> Array:
+    """Return the changes of a quantity since the start."""
     if observable == ENERGY:
         if motion.record.moving is None and not motion.autonomous:
             raise ValueError(
@@ -161,13 +178,13 @@ def _followed(motion: Trajectory, observable: str) -> tuple[Array, Array]:
                 "done from outside, or name an observable that should stay constant"
             )
         _check_events(motion)
-        return motion.energy_defect, motion.energy[0]
+        return motion.energy_defect
     if observable not in motion.changes:
         known = ", ".join((ENERGY, *motion.changes))
         raise ValueError(
             f"the motion has not followed {observable!r}, only {known}: propagate(…, observables={{{observable!r}: …}})"
         )
-    return motion.changes[observable], motion.observables[observable][0]
+    return motion.changes[observable]
 
 
 def _check_events(motion: Trajectory) -> None:
@@ -202,48 +219,10 @@ def _energy_at(task: Task, orbit: int, t: float, y: Array) -> float:
     return float(task.system.graph.evaluate([task.system.hamiltonian], point, FLOAT64)[0])
 
 
-def _unit(motion: Trajectory, observable: str | Observable, at_start: float) -> tuple[float, bool]:
-    """Return what changes are divided by, and whether that makes them relative."""
-    name = observable if isinstance(observable, str) else observable.name
-    if isinstance(observable, Observable) and name != ENERGY:
-        return observable.unit, observable.relative
-    relative = motion.relative if name == ENERGY else at_start != 0.0
-    return at_start if relative else 1.0, relative
-
-
-def _size(terms: Array, *, relative: bool) -> float:
-    """Return what errors that are not relative are large beside, 1 of those that are."""
-    return 1.0 if relative else float(np.mean(terms)) or 1.0
-
-
 def _steps_of_one(motion: Trajectory) -> float:
     """Return the steps of one orbit; those of many that choose their own are counted together."""
     together = motion.y.ndim == 3 and not motion.method.engine.takes_step
     return motion.steps / motion.y.shape[2] if together else motion.steps
-
-
-def _sizes_of_terms(motion: Trajectory, orbit: int) -> Array:
-    """Return Σ|y ∂H/∂y| at some states: what rounding each y by a part u of it does to H, in parts of u.
-
-    Where forces do work, H is the energy less the work W, which is one of the y: it is rounded as they are.
-    """
-    system, moving, whole = motion.record.task.system, motion.record.moving, motion.record.whole.y
-    works = moving is not None and moving.work is not None
-    if system.varying > works:
-        return np.zeros(1)  # parameters vary from orbit to orbit, and are no part of y
-    places = np.unique(np.linspace(0, len(motion.t) - 1, LOOKED_AT).astype(int))
-    states = whole[:, places, orbit] if whole.ndim == 3 else whole[:, places]
-    point = dict(zip(system.inputs, (*states, motion.t[places]), strict=True))
-    slopes = system.graph.evaluate(_slopes_of_energy(system), point, FLOAT64)
-    terms = [np.abs(y * np.asarray(slope)) for y, slope in zip(states, slopes, strict=True)]
-    return np.sum(terms, axis=0)
-
-
-def _slopes_of_energy(system: HamiltonEquations) -> tuple[int, ...]:
-    """Return the nodes of ∂H/∂y but for signs; Hamilton's equations have them."""
-    if system.canonical:
-        return (*system.force, *system.velocity)
-    return tuple(system.graph.gradient(system.hamiltonian, (*system.q, *system.p)))
 
 
 def _way(motion: Trajectory) -> str:

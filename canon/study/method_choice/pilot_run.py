@@ -16,6 +16,8 @@ from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.system_request import is_hamiltonian
 from canon.study.errors import StudyError
 from canon.study.method_choice.choice_question import FINER, PLACES, Question
+from canon.study.motion.observables import ENERGY
+from canon.study.motion.term_sizes import error_unit, terms_along
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -238,12 +240,13 @@ def _energy(found: Trajectory, largest: float | None = None) -> float:
 
 
 def unit_of(found: Trajectory, question: Question) -> float:
-    """Return what errors are relative to: the quantity at the start, or one where it is zero."""
+    """Return what errors are relative to: the quantity at the start, or one where it is zero but for rounding."""
     if question.unit is not None:
         return question.unit
-    if question.integral is None:
-        return float(abs(found.energy[0])) or 1.0
-    return float(abs(found.observables[question.observable][0])) or 1.0
+    if question.integral is None and found.energies is None:
+        return 1.0  # positions bring their own
+    name = ENERGY if question.integral is None else question.observable
+    return error_unit(found, name, terms_along(found, name))[0]
 
 
 def error_seen(motion: Trajectory, question: Question) -> float | None:

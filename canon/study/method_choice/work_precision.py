@@ -59,7 +59,7 @@ class WorkRow:
         Evaluations of the force (Taylor: of the series).
     energy_error
         Largest abs(E(t) − E(0))/abs(E(0)), or of what is left of E less the work of forces; NaN where no energy is
-        known, as of a vector field.
+        known, as of a vector field, or its change is no error, as of an H that depends on t.
     position_error
         Distance of the final coordinates from those of the reference, over the length of the latter.
     resonant
@@ -245,10 +245,15 @@ def _measured(
         tolerance=tolerance,
         cpu_seconds=min(each.cpu_seconds for each in timed),
         evaluations=found.evaluations,
-        energy_error=math.nan if found.energies is None else float(np.abs(found.energy_error).max()),
+        energy_error=float(np.abs(found.energy_error).max()) if _has_energy_error(found) else math.nan,
         position_error=float(np.linalg.norm(found.q[:, -1] - reference) / np.linalg.norm(reference)),
         precision=found.precision,
     )
+
+
+def _has_energy_error(found: Trajectory) -> bool:
+    """Tell whether an energy is known whose change, less the work that was integrated along, is an error."""
+    return found.energies is not None and (found.autonomous or found.record.moving is not None)
 
 
 def _marked(rows: Sequence[WorkRow]) -> list[WorkRow]:

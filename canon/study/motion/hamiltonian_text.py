@@ -16,14 +16,15 @@ from canon.study.errors import StudyError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from sympy import Expr
+    from sympy import Expr, Symbol
 
+    from canon.expression.parse import Scope
     from canon.flow.run.hamiltonian_system import HamiltonianSystem
     from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 
 __all__ = [
     "Formula", "check_declared", "entries_of", "formula_from", "formula_of", "hamiltonian_of", "names_of", "number_of",
-    "require_labels",
+    "require_labels", "scope_of",
 ]  # fmt: skip
 
 MOST_NAMES = 500
@@ -227,7 +228,7 @@ def hamiltonian_of(formula: Formula) -> Hamiltonian:
     StudyError
         With the place in the text and the remedy, where it can't be read.
     """
-    from canon.expression.parse import LanguageError, Scope, parse_expression
+    from canon.expression.parse import LanguageError, parse_expression
     from canon.expression.symbols.symbol import Coordinate, Momentum, parameters
     from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 
@@ -235,11 +236,20 @@ def hamiltonian_of(formula: Formula) -> Hamiltonian:
         q = [Coordinate(name, real=True) for name in formula.q]
         p = [Momentum(name, real=True) for name in formula.p]
         constants = [parameters(name) for name, _ in formula.parameters]
-        scope = Scope({symbol.name: symbol for symbol in (*q, *p, *constants)})
-        H = parse_expression(formula.H, scope)
+        H = parse_expression(formula.H, scope_of((*q, *p, *constants)))
     except LanguageError as error:
         raise StudyError(f"system {formula.name}, H: {error}") from error
     return Hamiltonian(H, q, p)
+
+
+def scope_of(symbols: Sequence[Symbol]) -> Scope:
+    """Return the scope in which these are declared, θ by the name theta too: the language spells Greek letters out."""
+    from canon.expression.parse import Scope
+    from canon.expression.text.tokens import GREEK
+
+    names = {symbol.name: symbol for symbol in symbols}
+    plain = {"".join(GREEK.get(letter, letter) for letter in name): symbol for name, symbol in names.items()}
+    return Scope(names, other_names={name: symbol for name, symbol in plain.items() if name not in names})
 
 
 def check_declared(

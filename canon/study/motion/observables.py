@@ -28,6 +28,7 @@ __all__ = [
     "SYMPLECTICITY",
     "Observable",
     "Tangent",
+    "counts_as_zero",
     "expressions_of",
     "observables_of",
     "tangent_of",
@@ -60,6 +61,11 @@ class Observable:
     expression: Expr | None = None
     unit: float = 1.0
     relative: bool = True
+
+
+def counts_as_zero(value: float, terms: float) -> bool:
+    """Tell whether a quantity is nothing, or rounding, beside the size of its terms Σ|yᵢ ∂I/∂yᵢ|."""
+    return not abs(value) > NEGLIGIBLE * terms
 
 
 def expressions_of(observables: Iterable[Observable]) -> dict[str, Expr]:
@@ -178,8 +184,9 @@ def _with_unit(
         raise StudyError(
             f"the observable {name!r} is not finite at the start: take another start, or another observable"
         )
-    terms = sum(abs(slope * x) for slope, x in zip(slopes, y0, strict=True))
-    if abs(value) > NEGLIGIBLE * terms:
+    terms = float(sum(abs(slope * x) for slope, x in zip(slopes, y0, strict=True)))
+    terms = terms if math.isfinite(terms) else 0.0  # √x has no slope at 0
+    if not counts_as_zero(value, terms):
         return Observable(name, f, abs(value))
     return Observable(name, f, terms or 1.0, relative=bool(terms))
 

@@ -14,6 +14,7 @@ from canon.study.motion.hamiltonian_text import (
     names_of,
     number_of,
     require_labels,
+    scope_of,
 )
 from canon.study.motion.system_text import system_text
 
@@ -74,7 +75,6 @@ def system_from(name: str, table: Mapping[str, Any]) -> Formula | SystemText:
 
 
 def _of_lagrangian(name: str, table: Mapping[str, Any]) -> SystemText:
-    from canon.expression.parse import Scope
     from canon.expression.symbols.symbol import Coordinate, parameters
     from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
     from canon.mechanics.lagrange.lagrangian import Lagrangian
@@ -86,7 +86,7 @@ def _of_lagrangian(name: str, table: Mapping[str, Any]) -> SystemText:
     if len(names) + len(given) > MOST_NAMES:
         raise StudyError(f"{name}: more than {MOST_NAMES} names; write larger systems in Python")
     q = [Coordinate(each, real=True) for each in names]
-    read = _reader(name, Scope({s.name: s for s in (*q, *(parameters(each) for each in given))}))
+    read = _reader(name, scope_of((*q, *(parameters(each) for each in given))))
     L, dissipation = read("L", table["L"]), read("dissipation", table.get("dissipation", "0"))
     lagrangian = Lagrangian(L, q, _listed(table, "forces", read), dissipation=dissipation)
     bound = [_listed(table, key, read) for key in ("holonomic", "nonholonomic")]
