@@ -68,13 +68,8 @@ def plot_study_heatmap(results: Sequence[Result], ax: Axes | None = None, *, wha
     values = np.full((len(rows), len(columns)), np.nan)
     for result, (x, y) in zip(results, places, strict=True):
         if result.state is State.FINISHED:
-<<<<<<< HEAD
             size = result.seconds if what == "seconds" else _size(result.numbers, what)
-            values[rows.index(result.motion), columns.index(result.setting)] = size or np.nan
-=======
-            size = result.seconds if what == "seconds" else abs(result.numbers[what])
             values[y, x] = size or np.nan
->>>>>>> cb7009e92d10716a0aae16e4361d80fadf13b195
     if np.isfinite(values).any():
         _colour(axes, values, what, error_symbol(results))
     else:

@@ -87,8 +87,6 @@ def hamiltonian(
     return Hamiltonian(H, lagrangian.q, momenta, lagrangian.t)
 
 
-<<<<<<< HEAD
-=======
 def _check_no_forces(lagrangian: Lagrangian) -> None:
     if any(Q != 0 for Q in lagrangian.forces):
         raise LegendreError(
@@ -97,18 +95,6 @@ def _check_no_forces(lagrangian: Lagrangian) -> None:
         )
 
 
-def _check_names(lagrangian: Lagrangian, momenta: Sequence[Symbol]) -> None:
-    """Refuse momenta that are called as another symbol of L is: H would read as if they were one."""
-    names = {s.name for s in symbols_of(lagrangian.L) if s not in momenta}
-    clash = next((p for p in momenta if p.name in names), None)
-    if clash is not None:
-        raise ValueError(
-            f"{clash} is the name of a momentum and of another symbol in L: call that otherwise, or give symbols for "
-            "the momenta, hamiltonian(L, p=[…])"
-        )
-
-
->>>>>>> 01968ee6138ec082af15b6712e875af0a69adaa3
 def lagrangian(hamiltonian: Hamiltonian, domain: Domain | None = None) -> Lagrangian:
     """Return L(q, q̇, t) = Σ p q̇ − H with the momenta eliminated.
 

@@ -12,11 +12,7 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.expression.symbols.symbol import time, time_derivative, velocity
-<<<<<<< HEAD
 from canon.expression.symbols.user_input import all_of, counted, given_expression
-=======
-from canon.expression.symbols.user_input import counted, given_expression
->>>>>>> 01968ee6138ec082af15b6712e875af0a69adaa3
 from canon.mechanics.algebra.all_vanish import all_vanish
 from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain, plain_all
 from canon.mechanics.lagrange.body import RigidBody, kinetic_energy
@@ -279,7 +275,6 @@ def magnetic_field(A: Sequence[Expr], x: Sequence[Symbol]) -> tuple[Expr, Expr, 
     Raises
     ------
     ValueError
-<<<<<<< HEAD
         Where there are not three components and three coordinates.
     """
     x = coordinate_symbols(x)
@@ -289,16 +284,6 @@ def magnetic_field(A: Sequence[Expr], x: Sequence[Symbol]) -> tuple[Expr, Expr, 
             "coordinates, 0 for a component that is none"
         )
     a = plain_all(A, x)
-=======
-        Where A or x has not three components.
-    """
-    if len(A) != 3 or len(x) != 3:
-        raise ValueError(
-            f"A has {counted(len(A), 'component')} in {counted(len(x), 'coordinate')}; ∇ × A needs three of each: in "
-            "a plane give A_z = 0 and z besides"
-        )
-    a = [sp.sympify(component, strict=True) for component in A]
->>>>>>> 01968ee6138ec082af15b6712e875af0a69adaa3
     return (
         a[2].diff(x[1]) - a[1].diff(x[2]),
         a[0].diff(x[2]) - a[2].diff(x[0]),
