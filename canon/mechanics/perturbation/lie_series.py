@@ -112,7 +112,7 @@ def deprit_triangle(
     return images
 
 
-def powers_of(f: Expr, small: Symbol, order: int) -> list[Expr]:
+def powers_of(f: Expr, small: Any, order: int) -> list[Expr]:
     """Return the coefficients of 1, ε … ε^order.
 
     Raises

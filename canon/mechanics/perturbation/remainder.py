@@ -80,7 +80,7 @@ def remainder_norms(form: NormalForm, radii: Sequence[float] | float | Expr) -> 
     0.001
     """
     n = len(form.source.q)
-    rho = [float(radii)] * n if isinstance(radii, Real | sp.Expr) else [float(r) for r in radii]
+    rho = [float(radii)] * n if isinstance(radii, int | float | Real | sp.Expr) else [float(r) for r in radii]
     if len(rho) != n or not all(isfinite(r) and r > 0 for r in rho):
         raise ValueError(f"radii should be a positive number, or {n} of them, not {radii!r}")
     norms = dict.fromkeys(range(2, form.order), 0.0)

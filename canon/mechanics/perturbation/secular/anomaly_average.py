@@ -156,14 +156,14 @@ def average_over_anomaly(
         )
     if order not in (1, 2):
         raise ValueError(f"the order should be 1 or 2, not {order!r}")
-    mu, H1 = given_expression(mu, "mu"), given_expression(perturbation, "the perturbation")
+    mu, given = given_expression(mu, "mu"), given_expression(perturbation, "the perturbation")
     variables = (r, f, *angles, *momenta)
     _check_constant(mu, variables)
-    taken = {s.name for s in (mu + H1).free_symbols | {*variables} if isinstance(s, Symbol)}
+    taken = {s.name for s in (mu + given).free_symbols | {*variables} if isinstance(s, Symbol)}
     e, eta = (Symbol(free_name(name, taken), positive=True) for name in ("e", "eta"))
     centre = Symbol(free_name("centre", taken), real=True)
     x = Ellipse(f, angles[0], momenta[0], momenta[1], e, eta)
-    H1, reduced = _in_anomaly(H1, mu, r, x)
+    H1, reduced = _in_anomaly(given, mu, r, x)
     try:
         return _Averaging(x, H1, reduced, mu, centre, angles, momenta).to(order)
     except NoFourierSeriesError as reason:
