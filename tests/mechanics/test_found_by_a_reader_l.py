@@ -289,7 +289,7 @@ class TestWords:
             NewtonEuler([plate], [x, y, theta], [Load(0, (1, 0), at=(0, 0, 0))])
 
     def test_potentials_of_fields(self) -> None:
-        with pytest.raises(ValueError, match="A has 2 components in 2 coordinates"):
+        with pytest.raises(ValueError, match="2 components of A and 2 coordinates"):
             magnetic_field((0, B * x), [x, y])
         assert magnetic_field((0, B * x, 0), [x, y, r]) == (0, 0, B)
         with pytest.raises(ValueError, match="A has 1 component at a position of 2"):

@@ -11,14 +11,16 @@ import sympy as sp
 from canon.expression.symbols.input_in_words import counted, described, given_kind, listed
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from sympy import Expr, Symbol
 
 __all__ = [
     "NotFiniteError",
     "all_of",
+    "by_symbol",
     "counted",
+    "free_name",
     "given_expression",
     "given_kind",
     "given_seconds",
@@ -147,6 +149,47 @@ def all_of(x: Any, count: int, name: str, of: str) -> Sequence[Any]:
     if len(x) != count:
         raise ValueError(f"{name} has {counted(len(x), 'entry', 'entries')} for {count} {of}; give one each")
     return x
+
+
+def by_symbol(given: Mapping[Any, Any], symbols: Sequence[Symbol], name: str) -> dict[Symbol, Any]:
+    """Return what was given by symbol or by name, by symbol; what was not named is left out.
+
+    Raises
+    ------
+    ValueError
+        Where something else was named, or one of the symbols twice.
+
+    Examples
+    --------
+    >>> q, p = sp.symbols("q p", real=True)
+    >>> by_symbol({"q": 1}, [q, p], "at"), by_symbol({sp.Symbol("q"): 1}, [q, p], "at")
+    ({q: 1}, {q: 1})
+    >>> by_symbol({"x": 1}, [q, p], "at")
+    Traceback (most recent call last):
+        ...
+    ValueError: at names x, which is none of q, p
+    """
+    named = {symbol.name: symbol for symbol in symbols}
+    unknown = sorted({str(key) for key in given} - {*named})
+    if unknown:
+        raise ValueError(f"{name} names {', '.join(unknown)}, which is none of {', '.join(named)}")
+    found = {named[str(key)]: value for key, value in given.items()}
+    if len(found) < len(given):
+        raise ValueError(f"{name} names a symbol twice: {', '.join(sorted(map(str, given)))}")
+    return found
+
+
+def free_name(name: str, taken: Collection[str]) -> str:
+    """Return a name with as many underscores behind it as make it another one than those that are taken.
+
+    Examples
+    --------
+    >>> free_name("r", {"r", "phi"}), free_name("u", {"r", "phi"})
+    ('r_', 'u')
+    """
+    while name in taken:
+        name += "_"
+    return name
 
 
 def _not_an_expression(f: Any, name: str) -> str:

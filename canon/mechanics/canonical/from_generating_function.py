@@ -130,7 +130,7 @@ def generated_hamiltonian(
     'HOLDS'
     """
     _is_generating(F)
-    energy = energy_in(H, F.q, F.p, F.t, "the generating function")
+    energy = energy_in(H, F.q, F.p, "the generating function", F.t)
     back = generated_inverse(F, domain)
     old = dict(zip((*F.q, *F.p), back.images, strict=True))
     return Hamiltonian(substitute(energy + F.F.diff(F.t), old), F.new_q, F.new_p, F.t)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.expression.symbols.user_input import counted
+from canon.expression.symbols.user_input import all_of, counted, given_symbols
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.canonical.implicit_transformation import ImplicitTransformation
 from canon.mechanics.canonical.transformation import CanonicalTransformation
@@ -81,7 +81,7 @@ def runge_kutta_step(
     Parameters
     ----------
     hamiltonian
-        An autonomous Hamiltonian.
+        The Hamiltonian; a time in it is taken at t + c h, where c is the sum of the stage's row.
     h
         The step size.
     A, b
@@ -91,7 +91,7 @@ def runge_kutta_step(
     ------
     ValueError
         Where a row is too short, or holds a coefficient of a stage that is not before it: the method is implicit then;
-        or the weights are not as many as the rows.
+        where b has not one weight for each row.
 
     Examples
     --------
@@ -113,10 +113,9 @@ def runge_kutta_step(
                 f"and nothing but zeros after them; it is {list(row)}"
             )
         moved = _moved(z, h, row[:before], stages)
-        stages.append([substitute(f, dict(zip(z, moved, strict=True))) for f in H.vector_field])
-    if len(b) != len(stages):
-        raise ValueError(f"{counted(len(b), 'weight')} for {counted(len(stages), 'stage')}; give one each")
-    new = _moved(z, h, b, stages)
+        there = {**dict(zip(z, moved, strict=True)), H.t: H.t + sp.Add(*row[:before]) * h}
+        stages.append([substitute(f, there) for f in H.vector_field])
+    new = _moved(z, h, all_of(b, len(stages), "b", "stages"), stages)
     n = len(H.q)
     return CanonicalTransformation(H.q, H.p, new[:n], new[n:], t=H.t)
 
@@ -124,7 +123,12 @@ def runge_kutta_step(
 def midpoint_step(
     hamiltonian: Hamiltonian, h: Expr, new_q: Sequence[Symbol], new_p: Sequence[Symbol]
 ) -> ImplicitTransformation:
-    """Return the implicit midpoint rule Z = z + h f((z + Z)/2), canonical for every Hamiltonian.
+    """Return the implicit midpoint rule Z = z + h f((z + Z)/2, t + h/2), canonical for every Hamiltonian.
+
+    Raises
+    ------
+    ValueError
+        Where there are not as many new coordinates and momenta as old ones.
 
     Examples
     --------
@@ -135,8 +139,10 @@ def midpoint_step(
     'HOLDS'
     """
     H = hamiltonian
+    new_q = all_of(given_symbols(new_q, "new_q"), len(H.q), "new_q", "coordinates")
+    new_p = all_of(given_symbols(new_p, "new_p"), len(H.p), "new_p", "momenta")
     old, new = (*H.q, *H.p), (*new_q, *new_p)
-    middle = {a: (a + b) / 2 for a, b in zip(old, new, strict=True)}
+    middle = {**{a: (a + b) / 2 for a, b in zip(old, new, strict=True)}, H.t: H.t + h / 2}
     equations = tuple(
         b - a - h * substitute(f, middle) for a, b, f in zip(old, new, H.vector_field, strict=True)
     )

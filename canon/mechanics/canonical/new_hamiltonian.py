@@ -86,7 +86,7 @@ def new_hamiltonian(
     -p*v + p**2/(2*m)
     """
     _is_map(transformation)
-    energy = energy_in(H, transformation.q, transformation.p, transformation.t)
+    energy = energy_in(H, transformation.q, transformation.p, "the map", transformation.t)
     canonical = transformation.is_canonical(valence=given_expression(valence, "valence"))
     if canonical.fails:
         raise ValueError(f"the map is not canonical, so it has no new Hamiltonian; {canonical.feedback}")
@@ -102,9 +102,7 @@ def _is_map(transformation: CanonicalTransformation) -> None:
     )
 
 
-def energy_in(
-    H: Expr | Hamiltonian, q: Sequence[Symbol], p: Sequence[Symbol], t: Symbol, whose: str = "the map"
-) -> Expr:
+def energy_in(H: Expr | Hamiltonian, q: Sequence[Symbol], p: Sequence[Symbol], whose: str, t: Symbol) -> Expr:
     """Return a Hamiltonian, given as one or as an expression, as an expression in these pairs of variables.
 
     Raises
@@ -116,7 +114,7 @@ def energy_in(
     --------
     >>> from sympy import symbols
     >>> x, y, t = symbols("x y t", real=True)
-    >>> energy_in(Hamiltonian(y**2/2, x, y), [x], [y], t)
+    >>> energy_in(Hamiltonian(y**2/2, x, y), [x], [y], "the map", t)
     y**2/2
     """
     if not isinstance(H, Hamiltonian):

@@ -10,7 +10,7 @@ import sympy as sp
 from flint import arb, arb_mat
 from sympy import Expr, Symbol
 
-from canon.expression.symbols.user_input import given_kind
+from canon.expression.symbols.user_input import by_symbol, given_kind
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.integrable.complete_integral import CompleteIntegral
 from canon.mechanics.integrable.cycles import Cycle, CycleIntegrals, ball_of, cycle_of
@@ -74,7 +74,7 @@ def action_variables(
     start: State,
     parameters: Mapping[Any, Expr | float] | None = None,
     digits: int = 30,
-    periods: Mapping[Symbol, Expr] | None = None,
+    periods: Mapping[Any, Expr | float] | None = None,
 ) -> ActionVariables:
     """Return the actions and frequencies on the torus through a start, with rigorous error bounds.
 
@@ -95,17 +95,18 @@ def action_variables(
     digits
         How many digits the result should have at least.
     periods
-        The periods of coordinates that are no angles; a coordinate in which p² is proved to have the period 2π, or
-        that is ignorable, is taken for an angle.
+        The periods of coordinates that are no angles, by symbol or name; a coordinate in which p² is proved to have the
+        period 2π, or that is ignorable, is taken for an angle.
 
     Raises
     ------
     NoCycleError
-        Where a coordinate is unbounded, at rest at its equilibrium, on a separatrix or too near to one.
+        Where a coordinate is unbounded, at rest at its equilibrium, on a separatrix or too near to one, or its momentum
+        is proved not to have the period that was given.
     NotHolomorphicError
         Where H holds functions that are not modelled.
     ValueError
-        Where the start or a parameter is missing.
+        Where the start or a parameter is missing, or a period is no positive number, or one of no coordinate.
 
     Examples
     --------
@@ -122,10 +123,11 @@ def action_variables(
     if digits < 1:
         raise ValueError(f"the digits should be a whole number from 1, not {digits}")
     values = _values(integral, start, parameters or {})
+    known_periods = _periods(periods or {}, integral.H.q)
     bits = int(digits * 3.33) + GUARD_BITS
     for _ in range(MOST_ROUNDS):
         with precision(bits):
-            found = _actions(integral, values, periods or {}, digits)
+            found = _actions(integral, values, known_periods, digits)
             if all(ball.rel_accuracy_bits() >= digits * 3.32 for ball in (*found.J, *found.frequencies)):
                 return found
         bits *= 2
@@ -140,7 +142,7 @@ def frequencies(
     start: State,
     parameters: Mapping[Any, Expr | float] | None = None,
     digits: int = 30,
-    periods: Mapping[Symbol, Expr] | None = None,
+    periods: Mapping[Any, Expr | float] | None = None,
 ) -> tuple[arb, ...]:
     """Return the frequencies ω = ∂H/∂J of the motion through a start; see :func:`action_variables`.
 
@@ -230,13 +232,21 @@ def _values(
     return known | constants
 
 
+def _periods(given: Mapping[Any, Expr | float], q: tuple[Symbol, ...]) -> dict[Symbol, Expr]:
+    periods = {x: _exact(period, x) for x, period in by_symbol(given, q, "periods").items()}
+    for x, period in periods.items():
+        if not period.is_positive:
+            raise ValueError(f"the period of {x} should be a positive number, not {period}")
+    return periods
+
+
 def _exact(number: Expr | float, name: Symbol) -> Expr:
     try:
         exact = sp.sympify(number, strict=True)
     except sp.SympifyError:
         raise ValueError(f"{name} should have a real number for its value, not {number!r}") from None
     if exact.is_Float:
-        exact = sp.Rational(float(exact))
+        exact = sp.Rational(exact)  # of any precision; float() would cut it to a double
     if not exact.is_number or exact.is_real is False:
         raise ValueError(f"{name} should have a real number for its value, not {number}")
     return exact

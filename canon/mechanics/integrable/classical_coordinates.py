@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 from sympy import Expr, Symbol, cos, cosh, sin, sinh
 
+from canon.expression.symbols.user_input import free_name, given_expression
 from canon.mechanics.algebra.substitution import exchanged, substitute
 from canon.mechanics.canonical.transformation import CanonicalTransformation, point_transformation
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
@@ -137,7 +138,7 @@ def charts_for(H: Hamiltonian, name: str, focal: Expr | None) -> list[Chart]:
     ------
     ValueError
         For a name that is not known, or does not fit the number of coordinates, or needs ``focal``; where H is not
-        κ Σ p² + V, so that its coordinates are not Cartesian.
+        κ Σ p² + V, so that its coordinates are not Cartesian; where ``focal`` is not positive.
     """
     if name not in ("any", *NAMES):
         raise ValueError(f"no coordinates are called {name!r}; choose given, any, {', '.join(NAMES)}")
@@ -154,27 +155,24 @@ def charts_for(H: Hamiltonian, name: str, focal: Expr | None) -> list[Chart]:
         )
     if name in _FOCAL and focal is None:
         raise ValueError(f"{name} coordinates need half the distance of their foci: focal=…")
+    c = sp.S.One if focal is None else given_expression(focal, "focal")
+    if c.is_positive is False:
+        raise ValueError(f"focal is half the distance of the foci, a positive number, not {c}")
     usable = [n for n in chosen if focal is not None or n not in _FOCAL]
-    return [_chart(n, sp.S.One if focal is None else focal, H) for n in usable]
+    return [_chart(n, c, H) for n in usable]
 
 
 def _chart(name: str, c: Expr, H: Hamiltonian) -> Chart:
     build, spelled, positive = _CHARTS[name]
     taken = {s.name for s in H.H.free_symbols | {*H.q} if isinstance(s, Symbol)}
-    names = [_free(n, taken) for n in spelled]
+    names = [free_name(n, taken) for n in spelled]
     q = tuple(
         Symbol(n, **({"positive": True} if k in positive else {"real": True})) for k, n in enumerate(names)
     )
-    p = tuple(Symbol(_free(f"p_{s.name}", taken), real=True) for s in q)
+    p = tuple(Symbol(free_name(f"p_{s.name}", taken), real=True) for s in q)
     position, scales = build(q, c)
     between = (sp.Gt(q[k], low) & sp.Lt(q[k], high) for k, (low, high) in _BETWEEN.get(name, {}).items())
     return Chart(name, q, p, position, scales, Domain(tuple(between)))
-
-
-def _free(name: str, taken: set[str]) -> str:
-    while name in taken:
-        name += "_"
-    return name
 
 
 Built = tuple[tuple[Expr, ...], tuple[Expr, ...]]

@@ -181,6 +181,8 @@ def cycle_of(
 ) -> Cycle:
     """Return the cycle of one coordinate: follow p² from the start to where it vanishes, or through a period."""
     q = momentum.q
+    if q in periods:
+        _check_period(momentum, values, periods[q])
     if momentum.square is None:
         if not momentum.shift.has(q):
             return Cycle(q, CycleKind.IGNORABLE, period=periods.get(q, 2 * sp.pi))
@@ -224,6 +226,19 @@ def _beside(square: BallFunction, slope: BallFunction, place: arb, direction: in
 
 def _functions(square: Expr, q: Symbol, balls: Mapping[Symbol, acb]) -> tuple[BallFunction, BallFunction]:
     return BallFunction(square, q, balls), BallFunction(square.diff(q), q, balls)
+
+
+def _check_period(momentum: SeparatedMomentum, values: Mapping[Symbol, Expr], period: Expr) -> None:
+    """Refuse a period that the momentum is proved not to have on this motion."""
+    q = momentum.q
+    others = {s: v for s, v in values.items() if s != q}
+    parts = [substitute(f, others) for f in (momentum.square, momentum.shift) if f is not None and f.has(q)]
+    moved = sp.Matrix([substitute(f, {q: q + period}) - f for f in parts])
+    if parts and vanishes(moved, budget=2.0).fails:
+        raise NoCycleError(
+            f"the momentum of {q} has not the period {period} that was given; leave it out for an angle, or write the "
+            "period exactly, as 2*pi"
+        )
 
 
 def _period(momentum: SeparatedMomentum) -> Expr | None:

@@ -136,7 +136,8 @@ def delaunay_variables(
     Raises
     ------
     ValueError
-        Where there are neither two nor three coordinates, or k or m is not positive.
+        Where there are neither two nor three coordinates, or k or m is not positive, or has a symbol in it that is
+        called as a variable is.
 
     Examples
     --------
@@ -153,6 +154,7 @@ def delaunay_variables(
     coordinates, momenta = pairs_of(q, p)
     angles = sp.symbols("l g h", real=True)[: len(q)]
     actions = (*sp.symbols("L G", positive=True), Symbol("H", real=True))[: len(q)]
+    _check_constant(k, m, (*coordinates, *momenta), (*angles, *actions))
     new = Hamiltonian(-m * k**2 / (2 * actions[0] ** 2), angles, actions)
     if len(coordinates) == 2:
         steps = (planar_delaunay(coordinates, momenta, k, m),)
@@ -190,7 +192,8 @@ def poincare_variables(
     Raises
     ------
     ValueError
-        Where there are neither two nor three coordinates, or k or m is not positive.
+        Where there are neither two nor three coordinates, or k or m is not positive, or has a symbol in it that is
+        called as a variable is.
 
     Examples
     --------
@@ -212,8 +215,9 @@ def poincare_variables(
     eta = sp.symbols("eta," if planar else "eta_1, eta_2", real=True)
     xi = sp.symbols("xi," if planar else "xi_1, xi_2", real=True)
     Lambda = Symbol("Lambda", positive=True)
-    K = -m * k**2 / (2 * Lambda**2)
-    new = Hamiltonian(K, (Symbol("lambda", real=True), *eta), (Lambda, *xi))
+    new_q, new_p = (Symbol("lambda", real=True), *eta), (Lambda, *xi)
+    _check_constant(k, m, (*coordinates, *momenta), (*new_q, *new_p))
+    new = Hamiltonian(-m * k**2 / (2 * Lambda**2), new_q, new_p)
     if planar:
         steps = (planar_poincare(coordinates, momenta, k, m),)
     else:
@@ -268,6 +272,18 @@ def delaunay_generating_function(delaunay: KeplerVariables, outward: bool = True
     F = G * phi + L * u + r * p_r - G * f
     real = Domain((sp.Gt(square, 0),))
     return GeneratingFunction(2, F, delaunay.old.q, delaunay.old.p, delaunay.new.q, delaunay.new.p, real)
+
+
+def _check_constant(k: Expr, m: Expr, old: Sequence[Symbol], new: Sequence[Symbol]) -> None:
+    """Refuse a strength or mass with a symbol in it that is called as a variable of the maps is: G M beside G."""
+    in_plane = polar_symbols() if len(old) > 4 else ()
+    names = {s.name for variables in (old, new, *in_plane) for s in variables}
+    clash = sorted({str(s) for s in k.free_symbols | m.free_symbols} & names)
+    if clash:
+        raise ValueError(
+            f"strength and mass are constants, and {', '.join(clash)} in them is the name of a variable of the orbit; "
+            "call it otherwise, as mu in place of G*M"
+        )
 
 
 def _positive(given: Expr | float, name: str) -> Expr:

@@ -34,6 +34,11 @@ def levi_civita_condition(H: Hamiltonian, i: int, j: int) -> Expr:
     upper ones by p: the condition that p_i(q_i, α) and p_j(q_j, α) with dp_i/dq_i = −H_i/H^i exist (T. Levi-Civita,
     Math. Ann. 59 (1904) 383, doi:10.1007/BF01445149).
 
+    Raises
+    ------
+    ValueError
+        Where i and j are not two of the places 0 … n − 1.
+
     Examples
     --------
     >>> from sympy import symbols
@@ -41,6 +46,13 @@ def levi_civita_condition(H: Hamiltonian, i: int, j: int) -> Expr:
     >>> levi_civita_condition(Hamiltonian(px**2/2 + py**2/2 + x*y, [x, y], [px, py]), 0, 1)
     p_x*p_y
     """
+    n = len(H.q)
+    if i == j or not {i, j} <= {*range(n)}:
+        raise ValueError(
+            f"the places of two coordinates are needed, from 0 to {n - 1}, not {i} and {j}"
+            if n > 1
+            else f"one coordinate has no condition: H has {H.q[0]} alone"
+        )
     f, q_i, q_j, p_i, p_j = H.H, H.q[i], H.q[j], H.p[i], H.p[j]
     by_q_i, by_q_j, by_p_i, by_p_j = f.diff(q_i), f.diff(q_j), f.diff(p_i), f.diff(p_j)
     return (

@@ -19,7 +19,7 @@ from canon.mechanics.perturbation.fourier_series import (
     fourier_series,
 )
 from canon.mechanics.perturbation.lie_series import lie_deprit, powers_of
-from canon.mechanics.perturbation.normal_form_step import Module
+from canon.mechanics.perturbation.normal_form_step import Module, whole_vector
 from canon.mechanics.perturbation.secular.von_zeipel import von_zeipel_function
 from canon.proof.analytic import is_analytic, proved_sign
 from canon.proof.domain.domain import EVERYWHERE, Domain, as_domain
@@ -132,7 +132,13 @@ class Averaged:
         """Tell whether Deprit's transform of H with W is K to the order, and K is free of the angles' fast terms.
 
         The transform is taken by SymPy's derivatives of the whole expressions, not by Fourier series.
+
+        Raises
+        ------
+        AveragingError
+            Where H depends on the time, or it was not decided whether a k·ω vanishes.
         """
+        _check_autonomous(self.source)
         question = f"K is H averaged over {', '.join(map(str, self.angles))} to order {self.order}"
         frequencies = [self.terms[0].diff(action) for action in self.actions]
         module = None if self.resonances is None else Module(self.resonances)
@@ -184,10 +190,12 @@ def average(
     Raises
     ------
     AveragingError
-        Where H₀ depends on more than the actions, a divisor k·ω is zero for a k outside ``resonances``, or it was not
-        decided whether one vanishes on the domain; ``reached`` keeps what was found.
+        Where H depends on the time, H₀ on more than the actions, a divisor k·ω is zero for a k outside ``resonances``,
+        or it was not decided whether one vanishes on the domain; ``reached`` keeps what was found.
     NoFourierSeriesError
         Where H is no trigonometric polynomial in the angles.
+    TypeError, ValueError
+        Where ε is no symbol, or a vector of ``resonances`` does not hold a whole number for each angle.
 
     Examples
     --------
@@ -197,6 +205,7 @@ def average(
     -17*I**3*epsilon**2/(64*omega) + 3*I**2*epsilon/8 + I*omega
     """
     fast = _fast_angles(H, angles, order)
+    _check_autonomous(H)
     momentum = dict(zip(H.q, H.p, strict=True))
     actions = tuple(momentum[theta] for theta in fast)
     slow_q = [x for x in H.q if x not in fast]
@@ -204,7 +213,7 @@ def average(
     parts = powers_of(H.H, small, order)
     _check_of_actions_alone(parts[0], {*H.q, *H.p} - {*actions}, small)
     frequencies = [parts[0].diff(action) for action in actions]
-    named = None if resonances is None else tuple(tuple(int(k) for k in v) for v in resonances)
+    named = None if resonances is None else _vectors(resonances, len(fast))
     module = None if named is None else Module(named)
     domain = with_pinched_bounds(as_domain(domain))
     column = [fourier_series(part * factorial(n), fast) for n, part in enumerate(parts)]
@@ -240,6 +249,19 @@ def _fast_angles(H: Hamiltonian, angles: Sequence[Symbol] | Symbol, order: int) 
     if order < 1:
         raise ValueError(f"the order should be a whole number from 1, not {order}")
     return fast
+
+
+def _vectors(resonances: Sequence[Sequence[int]], n: int) -> tuple[tuple[int, ...], ...]:
+    return tuple(whole_vector(k, n, "each of the resonances", "fast angle") for k in resonances)
+
+
+def _check_autonomous(H: Hamiltonian) -> None:
+    """Refuse a time in H: the generator would depend on it, and ∂W/∂t is of the order of what is removed."""
+    if H.H.has(H.t):
+        raise AveragingError(
+            f"H depends on the time {H.t}; take τ = Ω {H.t} as another fast angle, and add Ω T to H, where T is its "
+            "momentum"
+        )
 
 
 def _check_of_actions_alone(H0: Expr, others: set[Symbol], small: Symbol) -> None:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import operator
 from dataclasses import dataclass, field
-from math import comb
+from math import comb, isnan
 from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.cached_property import cached_property
-from canon.expression.symbols.user_input import given_expression, given_kind
+from canon.expression.symbols.user_input import by_symbol, given_expression, given_kind
 from canon.mechanics.algebra.substitution import entry, substitute
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.perturbation.coefficient_field import ring_over
@@ -22,6 +22,7 @@ from canon.mechanics.perturbation.normal_form_step import (
     SmallDivisor,
     ZeroDivisorError,
     homological_solution,
+    whole_vector,
 )
 from canon.mechanics.perturbation.quadratic_form import DiagonalForm, characteristic_exponents, diagonal_form
 from canon.mechanics.perturbation.taylor_parts import (
@@ -81,7 +82,7 @@ class NormalForm:
     generators
         Lowest degree and generator χ of each step; exp(L_χ) of all of them, one after another, takes H to K.
     small_divisors
-        The divisors k·λ that were divided by, smallest first.
+        The divisors k·λ that were divided by, smallest first, and behind them those that depend on parameters.
     """
 
     source: Hamiltonian
@@ -194,7 +195,7 @@ def birkhoff_normal_form(
         Vectors k that span the module of terms that are kept, near-resonances among them; without them every term with
         k·λ = 0 exactly is kept, and no other.
     at
-        The equilibrium, by variable; 0 for those not named.
+        The equilibrium, by variable or its name; 0 for those not named.
     superconvergent
         Take Kolmogorov's steps: from degree N one exp(L_χ) with χ = χ_{N+1} + … + χ_{2N−1}, {χ, K} = the rest of H to
         first order, leads to degree 2N − 1, so that three steps reach 5 and six 33. The normal form is the same up to
@@ -207,6 +208,8 @@ def birkhoff_normal_form(
         terms than fit into memory; ``reached`` keeps what was found.
     NoDiagonalFormError, NoExactFieldError, NotAnalyticError
         Where H₂ is not semisimple, the coefficients are in no field, or H has no Taylor series.
+    ValueError
+        Where H depends on the time, ``at`` names what is no variable, or a resonance is no vector of whole numbers.
 
     Examples
     --------
@@ -224,7 +227,8 @@ def birkhoff_normal_form(
     variables = (*H.q, *H.p)
     if H.H.has(H.t):
         raise ValueError("H depends on the time; take (t, −E) as another pair of variables, or average it")
-    place = {z: given_expression((at or {}).get(z, 0), f"the place of {z}") for z in variables}
+    given_place = by_symbol(at or {}, variables, "at")
+    place = {z: given_expression(given_place.get(z, 0), f"the place of {z}") for z in variables}
     moved = substitute(
         sp.nsimplify(H.H, rational=True), {z: place[z] + z for z in variables if place[z] != 0}
     )
@@ -265,12 +269,7 @@ def _hessian(H: Expr, variables: Sequence[Symbol]) -> sp.Matrix:
 
 
 def _vectors(resonances: Sequence[Sequence[int]], n: int) -> tuple[tuple[int, ...], ...]:
-    vectors = tuple(tuple(int(k) for k in vector) for vector in resonances)
-    if any(len(vector) != n for vector in vectors):
-        raise ValueError(
-            f"each of the resonances should have {n} whole numbers, one for each degree of freedom"
-        )
-    return vectors
+    return tuple(whole_vector(k, n, "each of the resonances", "degree of freedom") for k in resonances)
 
 
 def _normalised(
@@ -283,7 +282,7 @@ def _normalised(
     superconvergent: bool,
 ) -> NormalForm:
     size = 2 * len(H.q)
-    values = [complex(e.subs(dict.fromkeys(e.free_symbols, 1)).evalf()) for e in diagonal.exponents]
+    values = [None if e.free_symbols else complex(e.evalf()) for e in diagonal.exponents]
     divisors = Divisors(diagonal.eigenvalues, values, module)
     divided_by: dict[tuple[int, ...], SmallDivisor] = {}
     generators: list[tuple[int, PhasePolynomial]] = []
@@ -293,7 +292,7 @@ def _normalised(
     def result(reached: int) -> NormalForm:
         kept = {d: f for d, f in parts.items() if d <= reached}
         steps = tuple((d, chi) for d, chi in generators if d <= reached)
-        small = tuple(sorted(divided_by.values(), key=lambda s: s.value))
+        small = tuple(sorted(divided_by.values(), key=lambda s: (isnan(s.value), s.value)))
         return NormalForm(H, place, reached, named, diagonal, original, kept, steps, small)
 
     reached = 2

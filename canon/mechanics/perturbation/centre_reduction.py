@@ -18,7 +18,7 @@ from flint import acb, arb, fmpq
 from sympy import Expr, Symbol
 
 from canon.cached_property import cached_property
-from canon.expression.symbols.user_input import given_expression, given_kind
+from canon.expression.symbols.user_input import by_symbol, given_expression, given_kind
 from canon.frozen_mapping import FrozenMapping
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.perturbation.enclosed.enclosed_diagonal import (
@@ -203,7 +203,8 @@ def centre_manifold(
     order
         The highest degree, from 2, of the Hamiltonian on the manifold.
     at
-        The equilibrium or a place near it, by variable: Newton's iteration goes on from there. 0 for those not named.
+        The equilibrium or a place near it, by variable or its name: Newton's iteration goes on from there. 0 for those
+        not named.
     parameters
         Values of all other symbols; exact ones, as ``Rational``, are taken exactly, floats as what they are.
     digits
@@ -212,7 +213,8 @@ def centre_manifold(
     Raises
     ------
     ValueError
-        For an order below 2, a time in H, a symbol without value, or an equilibrium without hyperbolic directions.
+        For an order below 2, a time in H, a symbol without value, a place of what is no variable, or an equilibrium
+        without hyperbolic directions.
     NoDiagonalFormError
         Where exponents are zero, equal, or four belong together.
     NotAnalyticError
@@ -243,11 +245,12 @@ def centre_manifold(
             f"degree {order} in {2 * n} variables may have {comb(order + 2 * n - 1, 2 * n - 1)} terms, more than "
             "memory holds; take a lower order"
         )
+    place = by_symbol(at or {}, (*H.q, *H.p), "at")
     refuse_kinks(H.H, (*H.q, *H.p))
     bits = 32 + int(3.33 * digits) + 8 * order
     while True:
         try:
-            found = _at_precision(H, order, at or {}, parameters or {}, digits, bits)
+            found = _at_precision(H, order, place, parameters or {}, digits, bits)
         except PrecisionError:
             if 2 * bits > MOST_BITS:
                 raise

@@ -11,6 +11,7 @@ import sympy as sp
 from canon.cached_property import cached_property
 from canon.mechanics.algebra.substitution import substitute
 from canon.mechanics.perturbation.lie_transform import bracket_parts
+from canon.mechanics.perturbation.normal_form_step import whole_vector
 from canon.proof.domain.verdict import Evidence, Status, Verdict
 
 if TYPE_CHECKING:
@@ -78,12 +79,12 @@ def formal_integral(form: NormalForm, weights: Sequence[int] | None = None) -> F
     form
         The normal form.
     weights
-        w with w·k = 0 for every resonance k that occurs, one of each degree of freedom.
+        Whole numbers w with w·k = 0 for every resonance k that occurs, one for each degree of freedom.
 
     Raises
     ------
     ValueError
-        Where Σ wⱼ Iⱼ does not commute with the normal form.
+        Where Σ wⱼ Iⱼ does not commute with the normal form, or there are more or fewer weights, or others.
 
     Examples
     --------
@@ -98,7 +99,7 @@ def formal_integral(form: NormalForm, weights: Sequence[int] | None = None) -> F
     if weights is None:
         start, chosen = form.original[2], ()
     else:
-        chosen = tuple(int(w) for w in weights)
+        chosen = whole_vector(weights, len(form.source.q), "the weights", "degree of freedom")
         ring = diagonal.eigenvalues[0].ring
         start = ring.zero
         for j, w in enumerate(chosen):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
+from canon.expression.symbols.input_in_words import described
 from canon.expression.symbols.user_input import given_expression, given_symbols
 from canon.mechanics.hamilton.bracket import poisson_bracket
 
@@ -70,7 +71,12 @@ def lie_deprit(f: Expr, W: Expr, q: Sequence[Symbol], p: Sequence[Symbol], order
     order
         The highest power of ε.
     small
-        ε.
+        ε, a symbol: put a number for it into the result.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Where ε is no symbol, or f or W no polynomial in it.
 
     Examples
     --------
@@ -106,14 +112,18 @@ def deprit_triangle(
     return images
 
 
-def powers_of(f: Expr, small: Symbol, order: int) -> list[Expr]:
+def powers_of(f: Expr, small: Any, order: int) -> list[Expr]:
     """Return the coefficients of 1, ε … ε^order.
 
     Raises
     ------
-    ValueError
-        Where f is no polynomial in ε.
+    TypeError, ValueError
+        Where ε is no symbol, or f no polynomial in it.
     """
+    if not isinstance(small, sp.Symbol):
+        raise TypeError(
+            f"the small quantity should be a symbol, not {described(small)}; put a number for it last"
+        )
     expanded = sp.expand(f)
     if not expanded.is_polynomial(small):
         raise ValueError(f"{f} is no polynomial in {small}; expand it in {small} first")

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import operator
 from dataclasses import dataclass, field
+from math import nan
 from typing import TYPE_CHECKING
 
 import sympy as sp
+
+from canon.expression.symbols.user_input import counted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,6 +23,7 @@ __all__ = [
     "ZeroDivisorError",
     "homological_solution",
     "weight_of",
+    "whole_vector",
 ]
 
 Weight = tuple[int, ...]
@@ -37,7 +42,7 @@ class SmallDivisor:
     weight
         k: how often each aⱼ occurs more than its bⱼ.
     value
-        |k·λ|.
+        |k·λ|; NaN where parameters stand in it.
     degree
         The first degree where it occurred.
     """
@@ -73,6 +78,34 @@ class Module:
         return spanned.rank() == spanned.col_join(sp.Matrix([weight])).rank()
 
 
+def whole_vector(given: Sequence[int], count: int, name: str, of: str) -> Weight:
+    """Return a vector of whole numbers, one for each of as many as are counted.
+
+    Raises
+    ------
+    ValueError
+        Where a number is not whole, or there are more or fewer.
+
+    Examples
+    --------
+    >>> whole_vector([1, -2], 2, "a resonance", "angle")
+    (1, -2)
+    >>> whole_vector([0.5, -1], 2, "a resonance", "angle")
+    Traceback (most recent call last):
+        ...
+    ValueError: a resonance should have 2 whole numbers, one for each angle, not [0.5, -1]
+    """
+    try:
+        vector = tuple(operator.index(k) for k in given)
+    except TypeError:  # also where it is no sequence
+        vector = ()
+    if len(vector) != count:
+        raise ValueError(
+            f"{name} should have {counted(count, 'whole number')}, one for each {of}, not {given}"
+        )
+    return vector
+
+
 def weight_of(exponents: tuple[int, ...]) -> Weight:
     """Return k with kⱼ the power of aⱼ less that of bⱼ."""
     n = len(exponents) // 2
@@ -86,13 +119,13 @@ class Divisors:
     Parameters
     ----------
     eigenvalues, values
-        λ₁ … λₙ exactly, and as numbers.
+        λ₁ … λₙ exactly, and as numbers; None for one with parameters.
     module
         Which terms are kept; None for those with k·λ = 0.
     """
 
     eigenvalues: Sequence[PhasePolynomial]
-    values: Sequence[complex]
+    values: Sequence[complex | None]
     module: Module | None
     reciprocals: dict[str, PhasePolynomial] = field(default_factory=dict, repr=False)
     names: dict[Weight, str | None] = field(default_factory=dict, repr=False)
@@ -110,8 +143,9 @@ class Divisors:
         return self.names[weight]
 
     def modulus(self, weight: Weight) -> float:
-        """Return |k·λ|."""
-        return abs(sum(k * v for k, v in zip(weight, self.values, strict=True)))
+        """Return |k·λ|, NaN where parameters stand in it."""
+        terms = [None if v is None else k * v for k, v in zip(weight, self.values, strict=True) if k]
+        return nan if None in terms else abs(sum(term for term in terms if term is not None))
 
     def _name(self, weight: Weight) -> str | None:
         ring = self.eigenvalues[0].ring

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf, isfinite
+from numbers import Real
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -12,6 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from flint import fmpz_mpoly
+    from sympy import Expr
 
     from canon.mechanics.perturbation.birkhoff import NormalForm
     from canon.mechanics.perturbation.phase_polynomial import PhasePolynomial
@@ -65,7 +67,7 @@ def norm_on_polydisc(f: PhasePolynomial, diagonal: DiagonalForm, radii: Sequence
     return total
 
 
-def remainder_norms(form: NormalForm, radii: Sequence[float] | float) -> dict[int, float]:
+def remainder_norms(form: NormalForm, radii: Sequence[float] | float | Expr) -> dict[int, float]:
     """Return, for each order from 2 to form.order − 1, the norm of the first part beyond it that is no normal form.
 
     Examples
@@ -78,7 +80,7 @@ def remainder_norms(form: NormalForm, radii: Sequence[float] | float) -> dict[in
     0.001
     """
     n = len(form.source.q)
-    rho = [float(radii)] * n if isinstance(radii, int | float) else [float(r) for r in radii]
+    rho = [float(radii)] * n if isinstance(radii, int | float | Real | sp.Expr) else [float(r) for r in radii]
     if len(rho) != n or not all(isfinite(r) and r > 0 for r in rho):
         raise ValueError(f"radii should be a positive number, or {n} of them, not {radii!r}")
     norms = dict.fromkeys(range(2, form.order), 0.0)
@@ -89,7 +91,7 @@ def remainder_norms(form: NormalForm, radii: Sequence[float] | float) -> dict[in
     return norms
 
 
-def optimal_order(form: NormalForm, radii: Sequence[float] | float) -> OptimalOrder:
+def optimal_order(form: NormalForm, radii: Sequence[float] | float | Expr) -> OptimalOrder:
     """Return the order with the least first part of the remainder on a polydisc √(2Iⱼ) ≤ ρⱼ.
 
     Normal forms diverge in general: on each polydisc the remainder falls with the order only up to this one

@@ -12,7 +12,7 @@ from canon.cached_property import cached_property
 from canon.expression.symbols.user_input import given_kind, given_symbols
 from canon.mechanics.hamilton.bracket import poisson_bracket
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
-from canon.mechanics.perturbation.averaging import AveragingError
+from canon.mechanics.perturbation.averaging import ZERO_SECONDS, AveragingError
 from canon.mechanics.perturbation.fourier_series import (
     fourier_bracket,
     fourier_expression,
@@ -194,7 +194,7 @@ def _generator(part: Series, frequencies: Sequence[Expr], divisors: dict[Harmoni
         if not any(k):
             continue
         divisor: Any = sp.factor(sp.Add(*(j * omega for j, omega in zip(k, frequencies, strict=True))))
-        if divisor == 0:
+        if divisor == 0 or vanishes(divisor, budget=ZERO_SECONDS).holds:
             raise AveragingError(
                 f"at order {n} the term of k = {k} has the divisor k·ω = 0, so the actions of its angles are no "
                 "adiabatic invariants by themselves; take k·θ for an angle, which is slow"

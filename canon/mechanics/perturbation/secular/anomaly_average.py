@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol, cos
 
-from canon.expression.symbols.user_input import counted, given_expression, given_symbols
+from canon.expression.symbols.user_input import counted, free_name, given_expression, given_symbols
 from canon.mechanics.algebra.all_vanish import all_vanish
 from canon.mechanics.algebra.substitution import exchanged
 from canon.mechanics.perturbation.averaging import AveragingError
@@ -120,8 +120,9 @@ def average_over_anomaly(
     ----------
     perturbation
         H₁, a polynomial in 1/r with terms from 1/r² on, in sines and cosines of f and the angles, and in the momenta.
+        Other symbols are constants: an ``e`` or ``eta`` among them makes ``ellipse`` call its own ``e_``, ``eta_``.
     mu
-        The strength of the attraction.
+        The strength of the attraction, a constant.
     r, f
         The symbols of the distance and of the true anomaly in it.
     angles
@@ -135,6 +136,8 @@ def average_over_anomaly(
     ------
     AveragingError
         Where H₁ is no such polynomial, or K₂ is asked for and K₁ still has an angle in it, or H₁ has the node in it.
+    ValueError
+        Where angles and momenta do not belong together, the order is another one, or μ depends on a variable.
 
     Examples
     --------
@@ -153,13 +156,28 @@ def average_over_anomaly(
         )
     if order not in (1, 2):
         raise ValueError(f"the order should be 1 or 2, not {order!r}")
-    e, eta = sp.Symbol("e", positive=True), sp.Symbol("eta", positive=True)
+    mu, given = given_expression(mu, "mu"), given_expression(perturbation, "the perturbation")
+    variables = (r, f, *angles, *momenta)
+    _check_constant(mu, variables)
+    taken = {s.name for s in (mu + given).free_symbols | {*variables} if isinstance(s, Symbol)}
+    e, eta = (Symbol(free_name(name, taken), positive=True) for name in ("e", "eta"))
+    centre = Symbol(free_name("centre", taken), real=True)
     x = Ellipse(f, angles[0], momenta[0], momenta[1], e, eta)
-    H1, reduced = _in_anomaly(given_expression(perturbation), mu, r, x)
+    H1, reduced = _in_anomaly(given, mu, r, x)
     try:
-        return _Averaging(x, H1, reduced, mu, angles, momenta).to(order)
+        return _Averaging(x, H1, reduced, mu, centre, angles, momenta).to(order)
     except NoFourierSeriesError as reason:
         raise AveragingError(f"the perturbation is no trigonometric polynomial: {reason}") from None
+
+
+def _check_constant(mu: Expr, variables: Sequence[Symbol]) -> None:
+    """Refuse a strength with a symbol in it that is called as a variable is, as G M beside the momentum G."""
+    names = {s.name for s in variables}
+    clash = sorted(s.name for s in mu.free_symbols if isinstance(s, Symbol) and s.name in names)
+    if clash:
+        raise ValueError(
+            f"mu = {mu} is a constant, and {', '.join(clash)} is the name of a variable; call one of them otherwise"
+        )
 
 
 def _in_anomaly(H1: Expr, mu: Expr, r: Symbol, x: Ellipse) -> tuple[Expr, Expr]:
@@ -184,6 +202,7 @@ class _Averaging:
     H1: Expr
     reduced: Expr
     mu: Expr
+    centre: Symbol
     angles: tuple[Symbol, ...]
     momenta: tuple[Symbol, ...]
 
@@ -191,10 +210,9 @@ class _Averaging:
         x, n = self.x, self.mu**2 / self.x.L**3
         K1 = x.in_g(x.mean_in_f(self.reduced))
         waves = x.integral_in_f(self.reduced)
-        centre = sp.Symbol("centre", real=True)
         K = (K1,) if order == 1 else (K1, self._second(K1, waves))
-        generator = (K1 * centre + waves) / n
-        return AnomalyAverage(K, generator, self.H1, x, self.mu, centre, self.angles, self.momenta)
+        generator = (K1 * self.centre + waves) / n
+        return AnomalyAverage(K, generator, self.H1, x, self.mu, self.centre, self.angles, self.momenta)
 
     def _second(self, K1: Expr, waves: Expr) -> Expr:
         """Return ½ ⟨{H₁ + K₁, W}⟩ with W = (K₁ (f − l) + S)/n.
