@@ -23,11 +23,13 @@ from canon.mechanics.canonical.transformation import point_transformation
 from canon.mechanics.canonical.transformed_hamiltonian import transformed_hamiltonian
 from canon.mechanics.hamilton.legendre_pair import hamiltonian
 from canon.mechanics.hamilton.poisson_system import PoissonSystem
+from canon.mechanics.hamilton.rotating_body import free_body
 from canon.mechanics.hamilton.symmetry import is_constant_of_motion
 from canon.mechanics.hamilton.vector_field import VectorField, hamiltonian_field
 from canon.mechanics.lagrange.body import Particle, kinetic_energy
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 from canon.mechanics.lagrange.force import electric_field, magnetic_field
+from canon.mechanics.reduction.eliminate_constraints import embedded
 from canon.mechanics.reduction.routh import routhian
 
 q, p, Q, P = symbols("q p Q P", real=True)
@@ -106,6 +108,8 @@ def test_a_namesake_of_a_variable_is_no_constant(name, assumed):
         lambda: PoissonSystem(p**2 / 2, [q, p], [[0, Symbol("q")], [-Symbol("q"), 0]]),
         lambda: VectorField([p, -Symbol("q")], [q, p]),
         lambda: hamiltonian_field(Symbol("p") ** 2 / 2, q, p),
+        lambda: free_body([1, 2, 3]).is_constant_of_motion(Symbol("M_1")),
+        lambda: embedded(Lagrangian(x.dot**2 + y.dot**2, [x, y]), {Symbol("x", real=True): 2 * y}, [y]),
         lambda: kinetic_energy([Particle(m, (Symbol("x"),))], [x]),
         lambda: derivation([Particle(m, (Symbol("x"),))], [x]),
         lambda: derivation([Particle(m, (x,))], [x], V=Symbol("x") ** 2),

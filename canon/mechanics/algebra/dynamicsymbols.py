@@ -87,7 +87,11 @@ def plain_places(
     >>> plain_places({dynamicsymbols("x"): 2*dynamicsymbols("s")}, [x], [s])
     {x: 2*s}
     """
-    return {coordinate(s): plain(place, (*old, *new), t) for s, place in places.items()}
+    named = {s.name: s for s in (*old, *new)}
+    found = {coordinate(s): plain(place, (*old, *new), t) for s, place in places.items()}
+    for s in found:
+        check_no_namesake(s, (s,), named, (*old, *new), t)
+    return found
 
 
 def needs_plain(symbols: Collection[Any], named: Mapping[str, Symbol]) -> bool:
@@ -183,7 +187,9 @@ def in_own_time(f: Expr, variables: Collection[Symbol], t: Symbol = time) -> Exp
     (True, True)
     """
     bare = Symbol(t.name)
-    return f if bare in variables or bare not in f.free_symbols else exchanged(f, {bare: t})
+    if bare not in f.free_symbols or bare in variables:  # in this order: there may be thousands of variables
+        return f
+    return exchanged(f, {bare: t})
 
 
 def check_none_is_the_time(variables: Sequence[Symbol], call: str, t: Symbol) -> None:
