@@ -298,7 +298,7 @@ class Trajectory:
         record = self.record
         change = np.zeros(self.y.shape[1:]) if self.energies is None else self.energies.defect
         if orbits is not None:
-            orbits = chosen_orbits(orbits, change.shape[1] if change.ndim == 2 else 1)
+            orbits = chosen_orbits(orbits, self.y.shape[2] if self.y.ndim == 3 else 1)
         return error_estimate(record.task, record.with_events_of(orbits), change, orbits)
 
     def to_xarray(self) -> xarray.Dataset:

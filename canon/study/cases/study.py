@@ -243,8 +243,9 @@ def _told_apart(systems: Sequence[str | Formula | SystemText]) -> list[str | For
         if system not in others:
             others.append(system)
         number = others.index(system) + 1
-        known = isinstance(system, str) or number == 1
-        found.append(system if known else replace(system, name=f"{name} {number}"))
+        if not isinstance(system, str) and number > 1:
+            system = replace(system, name=f"{name} {number}")
+        found.append(system)
     return found
 
 

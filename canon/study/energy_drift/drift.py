@@ -152,7 +152,7 @@ def drift(
         Where the series is shorter than 256 samples, not in order of time, or holds NaN or infinity: a failed run is
         never data. Where a Hamiltonian depends on t (:func:`canon.drift_study` follows the energy less the work done
         then, as ``drift`` does of the motion of a Lagrangian), or events have changed the energy, so that its change is
-        no error.
+        no error. Where a motion has many orbits and none is chosen, or not the one that is.
 
     Examples
     --------
