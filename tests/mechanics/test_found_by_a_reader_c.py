@@ -224,7 +224,7 @@ def test_words_for_shapes():
     with pytest.raises(ValueError, match="2 coordinates and 1 momentum"):
         hamiltonian_field(p**2 / 2, [q, Q], [p])
     oscillator, h = Hamiltonian(p**2 / 2 + q**2 / 2, q, p), Symbol("h", real=True)
-    with pytest.raises(ValueError, match="2 weights for 1 stage"):
+    with pytest.raises(ValueError, match="b has 2 entries for 1 stage"):
         runge_kutta_step(oscillator, h, [[]], [0, 1])
     heun = runge_kutta_step(oscillator, h, [[], [1]], [Rational(1, 2)] * 2)
     assert sp.expand(heun.new_q[0]) == q + h * p - h**2 * q / 2
