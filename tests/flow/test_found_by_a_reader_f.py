@@ -96,7 +96,8 @@ def test_circular_orbits_go_on_to_larger_energies():
     r2 = x**2 + y**2 + z**2
     H = Hamiltonian((px**2 + py**2 + pz**2) / 2 + r2 / 2 + r2**2 / 4, [x, y, z], [px, py, pz])
     first = periodic_orbit(H, [1.0, 0, 0, 0, 2**0.5, 0], 2 * np.pi / 2**0.5)
-    up = continue_family(first, 6, 0.1)
+    up = continue_family(first, 8, 0.1)
+    assert up.bifurcations == ()
     assert (np.diff(up.energies) > 0).all()
     radius = np.array([np.linalg.norm(orbit.y[:3]) for orbit in up.orbits])
     np.testing.assert_allclose(up.periods, 2 * np.pi / np.sqrt(1 + radius**2), rtol=1e-9)

@@ -27,6 +27,9 @@ _LONGER, _SHORTER, _LEAST = 1.5, 0.5, 1e-6
 
 _REFINEMENTS = 6
 
+_AHEAD = 0.8
+"""Cosine of the angle to the tangent from which on what is found is no more of the family, or the step too long."""
+
 
 @dataclass(frozen=True)
 class Bifurcation:
@@ -174,7 +177,8 @@ def _next(
     except (NoPeriodicOrbitError, NonFiniteStateError):
         return None
     gone = np.append(found.y - orbit.y, found.period - orbit.period) / sizes
-    return found if np.linalg.norm(gone) < 2 * length and gone @ tangent > 0 else None
+    distance = float(np.linalg.norm(gone))
+    return found if distance < 2 * length and gone @ tangent > _AHEAD * distance else None
 
 
 def _tangent(orbit: PeriodicOrbit, before: Array | None) -> Array:
