@@ -177,14 +177,13 @@ def is_new_hamiltonian(
     'FAILS'
     """
     _is_map(transformation)
-    T = transformation
-    domain = as_domain(domain, T.domain)
+    T = replace(transformation, domain=as_domain(domain, transformation.domain))
     if len(images) != 2 * len(T.q):
         raise ValueError(
             f"{counted(len(images), 'symbol')} for the {2 * len(T.q)} new variables; give (*Q, *P)"
         )
     question = "the map is canonical and K is the new Hamiltonian"
-    T, images = replace(T, domain=domain), given_symbols(images, "images")
+    images = given_symbols(images, "images")
     c = T.valence if valence is None else given_valence(valence, (*T.variables, T.t))
     if c is None:
         return all_hold([T.is_canonical(valence=None)], question)
@@ -199,10 +198,10 @@ def is_new_hamiltonian(
 
     def verdicts() -> Iterator[Verdict]:
         yield T.is_canonical(valence=c)
-        yield all_vanish(claims, "the new Hamiltonian is right", domain)
-        verdict = having_values(Verdict(Status.HOLDS), {"K": carried}, [H], domain)
+        yield all_vanish(claims, "the new Hamiltonian is right", T.domain)
+        verdict = having_values(Verdict(Status.HOLDS), {"K": carried}, [H], T.domain)
         yield verdict
         if verdict.holds:
-            yield continuity(gap, T.variables, domain, name="K", given=T.images)
+            yield continuity(gap, T.variables, T.domain, name="K", given=T.images)
 
     return all_hold(verdicts(), question)

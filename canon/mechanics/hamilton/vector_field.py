@@ -11,7 +11,7 @@ from sympy import Expr, Symbol
 from canon.expression.symbols.symbol import time
 from canon.expression.symbols.user_input import counted, given_expression, given_symbols
 from canon.mechanics.algebra.dynamicsymbols import check_no_namesake, in_own_symbols
-from canon.mechanics.algebra.substitution import as_tuple
+from canon.mechanics.algebra.substitution import as_tuple, symbols_of
 from canon.mechanics.hamilton.bracket import lie_bracket
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ class VectorField:
             )
         named = {s.name: s for s in self.x}
         for f in self.components:
-            check_no_namesake(f, f.free_symbols, named, self.x, time)
+            check_no_namesake(f, symbols_of(f), named, self.x, time)
 
     def _repr_latex_(self) -> str:
         terms = [
@@ -122,10 +122,10 @@ def hamiltonian_field(H: Expr, q: Sequence[Symbol] | Symbol, p: Sequence[Symbol]
     >>> hamiltonian_field(p**2/2, [q], [p]).components
     (p, 0)
     """
-    H, q, p = given_expression(H, "H"), given_symbols(q, "q"), given_symbols(p, "p")
+    q, p = given_symbols(q, "q"), given_symbols(p, "p")
     if len(q) != len(p):
         raise ValueError(
             f"{counted(len(q), 'coordinate')} and {counted(len(p), 'momentum', 'momenta')}; each coordinate needs one"
         )
-    (H,) = in_own_symbols([H], (*q, *p))
-    return VectorField([*(H.diff(s) for s in p), *(-H.diff(s) for s in q)], (*q, *p))
+    (energy,) = in_own_symbols([given_expression(H, "H")], (*q, *p))
+    return VectorField([*(energy.diff(s) for s in p), *(-energy.diff(s) for s in q)], (*q, *p))

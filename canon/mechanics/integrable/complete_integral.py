@@ -11,7 +11,7 @@ from sympy import Expr, Symbol
 from canon.cached_property import cached_property
 from canon.expression.symbols.user_input import given_kind
 from canon.mechanics.algebra.all_vanish import all_vanish
-from canon.mechanics.algebra.substitution import substitute
+from canon.mechanics.algebra.substitution import substitute, symbols_of
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.integrable.classical_coordinates import Chart, charts_for, isotropic_coefficient
 from canon.mechanics.integrable.function_splitting import common_factor
@@ -202,7 +202,7 @@ def hamilton_jacobi(
     given_kind(H, Hamiltonian, "what hamilton_jacobi() takes", "give Hamiltonian(H, q, p)")
     domain = as_domain(domain)
     E = Symbol("E", real=True) if energy is None else energy
-    if E.name in {s.name for s in (*H.q, *H.p, H.t, *H.H.free_symbols)}:
+    if E.name in {s.name for s in (*H.q, *H.p, H.t, *symbols_of(H.H))}:
         raise ValueError(f"{E} already stands in H; give another symbol for the energy: energy=Symbol(…)")
     refused: list[str] = []
     if coordinates in ("given", "any"):
