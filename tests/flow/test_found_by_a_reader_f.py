@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon import Hamiltonian, Splitting, Study, Taylor, coordinates, results_of, run_study
+from canon import Hamiltonian, Splitting, Study, Taylor, coordinates, parameters, results_of, run_study
 from canon.flow import (
     HamiltonianMap,
     Regularity,
@@ -138,3 +138,18 @@ def test_a_start_that_was_made_for_another_parameter_says_so():
     np.testing.assert_array_equal(other.state(), kepler.state())
     assert kepler.with_parameters(mu=kepler.values["mu"]).starts == kepler.starts
     assert find("simple-pendulum").with_parameters(l=2.0).starts == find("simple-pendulum").starts
+
+
+def test_deviations_by_taylor_beside_parameters_by_orbit():
+    """They are what each orbit has by itself; shapes of arrays were told."""
+    m = parameters("m", positive=True)
+    H = Hamiltonian((px**2 + py**2) / (2 * m) + (x**2 + y**2) / 2 + x**2 * y - y**3 / 3, [x, y], [px, py])
+    start, masses = np.array([[0.0, 0.1], [0.1, -0.2], [0.35, 0.3], [0.0, 0.1]]), np.array([1.0, 1.3])
+    how = {"method": Taylor(), "samples": 50}
+    several = lyapunov_spectrum(H, (0, 100), start, parameters={m: masses}, **how)
+    volumes = gali(H, (0, 100), start, vectors=3, parameters={m: masses}, **how)
+    for k, mass in enumerate(masses):
+        alone = lyapunov_spectrum(H, (0, 100), start[:, k], parameters={m: mass}, **how)
+        np.testing.assert_allclose(several.exponents[:, k], alone.exponents, atol=1e-7)
+        one = gali(H, (0, 100), start[:, k], vectors=3, parameters={m: mass}, **how)
+        np.testing.assert_allclose(volumes.value[k], one.value, rtol=1e-5)

@@ -231,3 +231,15 @@ def test_words_for_shapes():
     with pytest.raises(ValueError, match="three components"):
         magnetic_field((0, x), [x, y])
     assert magnetic_field((0, x, 0), [x, y, r]) == (0, 0, 1)
+
+
+def test_momenta_of_a_lagrangian_are_its_own():
+    """p_θ of a pendulum was taken for a parameter, which is constant."""
+    m, g = sp.symbols("m g", positive=True)
+    r, theta = coordinates("r theta")
+    pendulum = Lagrangian(m * theta.dot**2 / 2 + m * g * sp.cos(theta), [theta])
+    assert is_constant_of_motion(theta.momentum, pendulum).fails
+    assert is_constant_of_motion(theta.momentum**2 / (2 * m) - m * g * sp.cos(theta), pendulum).holds
+    turning = Lagrangian(m * (r.dot**2 + r**2 * theta.dot**2) / 2 - r**2, [r, theta])
+    assert is_constant_of_motion(theta.momentum, turning).holds
+    assert is_constant_of_motion(r.momentum, turning).fails

@@ -13,7 +13,7 @@ from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.flow.run.sampling_plan import Sampling, adaptive_plan, fixed_plan
 from canon.flow.tangent.deviation_units import deviation_units
 from canon.flow.tangent.taylor_stretches import TaylorStretches
-from canon.kernel.program.variational import variational
+from canon.kernel.program.variational import of_all_variables, variational
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -59,8 +59,9 @@ class VariationalDeviations:
         given: bool = False,
     ) -> None:
         del given  # lengths are those of (q, p)
-        self.task, self.orthogonal = task, orthogonal
-        self.larger = variational(task.system, frame.shape[1])
+        self.task, self.orthogonal, self.rows = task, orthogonal, task.system.rows
+        # Parameters that differ from orbit to orbit stand in the state: they have deviations too, which stay 0.
+        self.larger = variational(of_all_variables(task.system), frame.shape[1])
         self.taylor = TaylorStretches.of(task, self.larger)
         chosen = np.arange(task.states[0].shape[1]) if orbits is None else orbits
         self.high, self.low = (part[:, chosen].copy() for part in task.states)
@@ -94,11 +95,12 @@ class VariationalDeviations:
 
     def states(self) -> Array:
         """Return the states, shape (2n, orbits)."""
-        return self.high.copy()
+        return self.high[self.rows]
 
     def _units(self) -> Array:
         """Return the sizes of deviations that are kept orthonormal."""
-        return deviation_units(self.task.system, self.high[:, 0], float(self.task.plan.instants[0]))
+        begin = float(self.task.plan.instants[0])
+        return deviation_units(self.task.system, self.high[:, 0], begin)[self.rows]
 
     def _one(self, k: int) -> Array:
         """Go to the next sample with one orbit, in as many stretches as its deviations ask for."""
@@ -145,7 +147,9 @@ class VariationalDeviations:
     def _moved(self, k: int, plan: Plan) -> Array:
         """Move one orbit along a plan, and return its deviations, not renormalised."""
         n, vectors = len(self.task.system.q), self.frames.shape[1]
-        beside = self.frames[:, :, k].reshape(2, n, vectors).swapaxes(1, 2).reshape(2, vectors * n)
+        frame = np.zeros((2 * n, vectors))
+        frame[self.rows] = self.frames[:, :, k]
+        beside = frame.reshape(2, n, vectors).swapaxes(1, 2).reshape(2, vectors * n)
         high = np.concatenate([self.high[:, k].reshape(2, n), beside], axis=1).ravel()
         low = np.concatenate([self.low[:, k].reshape(2, n), 0 * beside], axis=1).ravel()
         if self.taylor is not None:
@@ -157,7 +161,7 @@ class VariationalDeviations:
         halves = y.reshape(2, -1)
         self.high[:, k] = halves[:, :n].ravel()
         self.low[:, k] = carried.reshape(2, -1)[:, :n].ravel()
-        return halves[:, n:].reshape(2, vectors, n).swapaxes(1, 2).reshape(2 * n, vectors)
+        return halves[:, n:].reshape(2, vectors, n).swapaxes(1, 2).reshape(2 * n, vectors)[self.rows]
 
 
 def _parts_of(plan: Plan, sample: int, parts: int) -> list[Plan]:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.expression.symbols.symbol import acceleration, time_derivative, velocity
+from canon.expression.symbols.symbol import acceleration, momentum, time_derivative, velocity
 from canon.expression.symbols.user_input import all_of, given_kind
 from canon.mechanics.algebra.all_vanish import all_vanish, having_values
 from canon.mechanics.algebra.dynamicsymbols import plain, plain_all
@@ -51,7 +51,8 @@ def is_constant_of_motion(
     Parameters
     ----------
     I
-        A function of q, p, t for a Hamiltonian system, of q, q̇, t for a Lagrangian one.
+        A function of q, p, t for a Hamiltonian system, of q, q̇, t for a Lagrangian one, where a momentum
+        ``x.momentum`` stands for ∂L/∂ẋ.
     system
         The system.
     domain
@@ -75,7 +76,8 @@ def is_constant_of_motion(
         rate = system.rate(function)
     else:
         state = (*system.q, *map(velocity, system.q))
-        function = plain(I, system.q, system.t)
+        momenta = dict(zip(map(momentum, system.q), system.momenta, strict=True))
+        function = exchanged(plain(I, system.q, system.t), momenta)
         found = dict(zip(map(acceleration, system.q), system.accelerations, strict=True))
         rate = exchanged(time_derivative(function, system.q, system.t), found)
     everywhere, moving = as_domain(domain), (*state, system.t)
