@@ -16,6 +16,7 @@ from canon import (
     TimeTransformed,
     VectorField,
     coordinates,
+    parameters,
     propagate,
     time,
 )
@@ -286,6 +287,30 @@ def test_methods_agree_on_exponents_within_their_errors():
     ]
     for one in regular[1:]:
         np.testing.assert_allclose(one.history[:, -1], regular[0].history[:, -1], atol=1e-7)
+
+
+@pytest.mark.slow
+def test_the_double_pendulum_parts_as_its_frequency_says():
+    """Of equal links and masses, from 143° and 29°: λ = 0.39 √(g/l), by Gauss and by Taylor, at any g."""
+    theta, phi = coordinates("theta phi")
+    g, (p, s) = parameters("g", positive=True), (theta.momentum, phi.momentum)
+    kinetic = (p**2 + 2 * s**2 - 2 * p * s * sp.cos(theta - phi)) / (2 * (1 + sp.sin(theta - phi) ** 2))
+    double = Hamiltonian(kinetic - g * (2 * sp.cos(theta) + sp.cos(phi)), [theta, phi], [p, s])
+    ways = [
+        (1, 20_000, {"method": Gauss(4), "step": 0.04}),
+        (1, 3_000, {"method": Taylor()}),
+        (4, 5_000, {"method": Gauss(4), "step": 0.02}),
+    ]
+    for strength, span, way in ways:
+        found = lyapunov_spectrum(
+            double, (0, span), [2.5, 0.5, 0, 0], parameters={g: strength}, samples=300, **way
+        )
+        frequency = strength**0.5
+        assert found.verdict is Regularity.CHAOTIC
+        assert abs(found.largest / frequency - 0.39) < 0.01 + 3 * found.errors[0] / frequency
+        assert found.errors[0] < 0.05 * frequency
+        assert abs(found.exponents[1]) < 3 * found.errors[1]
+        assert found.pairing_defect < 1e-12
 
 
 @pytest.mark.slow
