@@ -335,7 +335,10 @@ def test_what_steps_with_the_time_is_compared_within_the_span(span) -> None:
     for a, b in itertools.pairwise(ends):
         within = (a + b) / 2  # the wave is what it is in the middle
         rest = square_wave(within, [0.0, 0.0])[1]
-        way = lambda t, y, rest=rest: [y[1], -4 * y[0] + rest]  # noqa: E731
+
+        def way(t, y, rest=rest):
+            return [y[1], -4 * y[0] + rest]
+
         state = solve_ivp(way, (a, b), state, method="DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
     np.testing.assert_allclose(motion.final, state, rtol=1e-9, atol=1e-9)
 

@@ -58,17 +58,17 @@ class TestForcesByCoordinate:
 
     @pytest.mark.parametrize("forces", [{y: -c * y.dot}, [0, -c * y.dot]])
     def test_at_scale(self, forces: object) -> None:
-        d = derivation(self.bodies, [x, y], forces=forces)  # type: ignore[arg-type]
+        d = derivation(self.bodies, [x, y], forces=forces)
         assert [d.graph.to_sympy(node) for node in d.f] == [0, -c * y.dot]
-        h = canonical_derivation(self.bodies, [x, y], forces=forces)  # type: ignore[arg-type]
+        h = canonical_derivation(self.bodies, [x, y], forces=forces)
         assert [h.graph.to_sympy(node) for node in h.p_dot] == [0, -c * y.dot]
 
     @pytest.mark.parametrize("of", [lagrangian_of_bodies, GibbsAppell, derivation, canonical_derivation])
     def test_others_are_refused_in_words(self, of: object) -> None:
         with pytest.raises(ValueError, match="forces are given for r; the coordinates are x, y"):
-            of(self.bodies, [x, y], forces={r: 1})  # type: ignore[operator]
+            of(self.bodies, [x, y], forces={r: 1})
         with pytest.raises(ValueError, match="1 generalized force for 2 coordinates"):
-            of(self.bodies, [x, y], forces=[1])  # type: ignore[operator]
+            of(self.bodies, [x, y], forces=[1])
 
 
 class TestPotentialsWithVelocities:
@@ -108,7 +108,7 @@ class TestPotentialsWithVelocities:
     @pytest.mark.parametrize("of", [derivation, canonical_derivation])
     def test_others_are_refused(self, of: object) -> None:
         with pytest.raises(ValueError, match="not affine in the velocities"):
-            of([Particle(m, (x,))], [x], a * x.dot**2)  # type: ignore[operator]
+            of([Particle(m, (x,))], [x], a * x.dot**2)
 
 
 class TestSlopesInPieces:

@@ -103,11 +103,12 @@ def _apart(
     sums: Sequence[RepeatedTerms], t: Symbol, arithmetic: Arithmetic
 ) -> tuple[list[RepeatedTerms], list[CompiledPairs]]:
     """Return the sums that NumPy adds up, and those over many pairs, which are compiled."""
-    many = [each for each in sums if each.pairs and each.count >= _MANY and can_be_compiled(each)]
+    many = [each for each in sums if each.count >= _MANY and _is_compiled(each)]
     scalar = DOUBLE if arithmetic is FLOAT64 else DOUBLE_DOUBLE
     return [each for each in sums if each not in many], [_kept_pairs(each, t, scalar) for each in many]
 
 
+_is_compiled = functools.lru_cache(maxsize=_KEPT)(can_be_compiled)
 _kept_pairs = functools.lru_cache(maxsize=_KEPT)(CompiledPairs)
 
 

@@ -173,8 +173,7 @@ def _in_own_symbols(f: Expr, named: Mapping[str, Symbol], variables: Sequence[Sy
     symbols: list[Symbol] = [s for s in f.free_symbols if isinstance(s, Symbol)]
     check_no_namesake(f, symbols, named, variables, t)
     _check_no_other_time(f, symbols, named, t)
-    bare = Symbol(t.name)
-    return exchanged(f, {bare: t}) if bare in symbols and bare != t and bare not in variables else f
+    return in_own_time(f, variables, t)
 
 
 def in_own_time(f: Expr, variables: Collection[Symbol], t: Symbol = time) -> Expr:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import reduce
+from inspect import signature
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -30,7 +31,7 @@ MOST_EQUATIONS, MOST_OPERATIONS = 8, 10_000
 
 MOST_PIECES = 60
 
-_ORDINARY = {"initial": np._NoValue, "where": True}  # noqa: SLF001  # pyright: ignore[reportPrivateUsage]
+_ORDINARY = {"initial": signature(np.max).parameters["initial"].default, "where": True}
 """What NumPy's own functions hand on where nothing else is asked."""
 
 _OF_MATRICES = ("matmul", "vecdot", "matvec", "vecmat")
