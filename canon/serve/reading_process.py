@@ -7,12 +7,12 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import Element, SubElement, tostring
 
+from canon.exercise.sheet.answers.typed_answers import typed_answers
 from canon.exercise.sheet.key_shapes import faults, with_plain_names
 from canon.exercise.sheet.kind import COMMON, Shape
 from canon.exercise.sheet.kinds import KINDS
 from canon.exercise.sheet.reading import InvalidClaim, Reading
 from canon.exercise.sheet.sheet import Claim, ClaimError
-from canon.exercise.sheet.typed_answers import typed_answers
 from canon.expression.mathml import MAX_CHARACTERS, mathml
 from canon.expression.parse import (
     LanguageError,

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,13 +15,14 @@ from canon.flow.method.method import TimeTransformed
 from canon.flow.method.number_formats import unit_round_off
 from canon.flow.method.setting import Setting
 from canon.flow.method.solvable_splitting import WisdomHolman
+from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.scene import find
 from canon.study.errors import StudyError
 from canon.study.method_choice import candidate
 from canon.study.method_choice.candidate import HOPELESS, by_order, candidate_methods, tried_with
 from canon.study.method_choice.choice_question import Question
 from canon.study.method_choice.error_law import expected_error
-from canon.study.method_choice.pilot_run import Pilot, pilot
+from canon.study.method_choice.pilot_run import Pilot, pilot, seconds_per_time
 from canon.study.method_choice.resolution import least_error
 from canon.study.method_choice.tolerance_search import tolerance_at
 from tests.flow.test_tangent_maps import chain
@@ -393,6 +396,29 @@ def test_what_is_taken_step_by_step_in_python_is_tried_where_it_may_be_the_cheap
     assert left_out.note == "dearer at any tolerance"
     # It was right to: what it costs where it is tried.
     assert alone.predicted_cost > HOPELESS * beside.predicted_cost
+
+
+@dataclass(frozen=True)
+class _Timed:
+    """A question whose runs take thirty microseconds and one for each unit of time, and end at a time."""
+
+    span: float
+    ends: float = math.inf
+
+    def run(self, setting, span, samples):
+        if span > self.ends:
+            raise NonFiniteStateError("it ends", self.ends, np.zeros(2))
+        return SimpleNamespace(cpu_seconds=3e-5 + 1e-6 * span)
+
+
+def test_what_a_run_takes_before_its_first_step_is_not_taken_for_steps():
+    seen = Pilot(Setting(Splitting("verlet"), 0.1), 10.0)
+    assert seconds_per_time(_Timed(1e6), seen) == pytest.approx(1e-6, rel=0.05)
+    # Where the whole motion is short, so are its runs; what follows a pilot need not be there.
+    assert seconds_per_time(_Timed(20.0), seen) == pytest.approx(2.5e-6)
+    assert seconds_per_time(_Timed(1e6, ends=50.0), seen) == pytest.approx(1.75e-6)
+    with pytest.raises(NonFiniteStateError):
+        seconds_per_time(_Timed(1e6, ends=5.0), seen)
 
 
 def test_only_the_first_step_of_a_method_is_timed(monkeypatch):

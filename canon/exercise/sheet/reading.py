@@ -11,6 +11,7 @@ import sympy as sp
 from sympy import Expr, Rational, Symbol
 
 from canon.cached_property import cached_property
+from canon.exercise.sheet.answers.typed_answers import typed_answers
 from canon.exercise.sheet.declared_symbols import DeclaredSymbols, as_list
 from canon.exercise.sheet.field_texts import texts_in
 from canon.exercise.sheet.kept_parses import parsed
@@ -18,7 +19,6 @@ from canon.exercise.sheet.kind import Kind, Shape
 from canon.exercise.sheet.kinds import kind_of
 from canon.exercise.sheet.sheet import Claim, ClaimError
 from canon.exercise.sheet.signs_apart import signs_apart
-from canon.exercise.sheet.typed_answers import typed_answers
 from canon.expression.parse import (
     LanguageError,
     Scope,
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from sympy import Basic
     from sympy.logic.boolalg import Boolean
 
-    from canon.exercise.sheet.typed_answers import Link
+    from canon.exercise.sheet.answers.one_expression import Link
 
 __all__ = ["InvalidClaim", "Reading"]
 

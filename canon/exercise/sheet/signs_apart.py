@@ -6,10 +6,10 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from canon.exercise.sheet.answers.typed_values import SIGNS, both_signs
 from canon.exercise.sheet.field_texts import texts_in
 from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.kinds import kind_of
-from canon.exercise.sheet.typed_values import SIGNS, both_signs
 from canon.expression.parse import LanguageError
 from canon.frozen_mapping import FrozenMapping
 
