@@ -464,6 +464,18 @@ SECTIONS = {
         "Every attack of these ended in one of the ways that are meant, where the last column is 0.",
         (Table(("attack", "how many", "bad"), r"^(\S.*?): (\d+): .*; (\d+) bad"),),
     ),
+    "tested_lines": Section(
+        "Of all branches and lines the tests run {0} %. What they do not run is, for the most part, what a killed "
+        "process was about to do, the other operating systems, optional packages that are not installed, and sentences "
+        "for states that no test has reached.",
+        (
+            Table(
+                ("room", "lines", "not run", "branches", "half run", "% run"),
+                r"^(\w+) +(\d+) +(\d+) +(\d+) +(\d+) +([\d.]+) %$",
+            ),
+        ),
+        told=r"^all .* ([\d.]+) %$",
+    ),
     "mutation": Section(
         "Of {0} small changes of the code, drawn by a seed, {1} change what canon does, and its tests notice {2} % of "
         "those. Each of the others was read; why it changes nothing, or which test was written for it, stands in the "

@@ -47,6 +47,7 @@ BENCHMARKS = {
     "drift_calibration": "The drift statistics on series of known growth",
     "robustness": "Attacks, counted",
     "mutation": "Mutants of canon that its tests kill",
+    "tested_lines": "Lines and branches that the tests run",
     "chaos": "What deviations cost, a map of MEGNO, and verdicts on orbits that are known",
     "choose": "What `choose` foretells, beside what came of it",
 }
@@ -55,6 +56,7 @@ ARGUMENTS = {
     "normal_forms": ["--large"],
     "drift_calibration": ["200"],
     "mutation": ["--count", "520", "--seed", "1"],
+    "tested_lines": ["--kept"],
 }
 HEAD = """\
 # What was measured
