@@ -1,4 +1,4 @@
-"""How a text is read, asked without a service around it: what stands in a claim, and what is wrong with the question."""
+"""How a text is read, asked without a service around it: what stands in a claim, what is wrong with a question."""
 
 import pytest
 
