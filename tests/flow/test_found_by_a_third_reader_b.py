@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon import DOP853, Event, Hamiltonian, Lagrangian, coordinates, parameters, propagate
+from canon import DOP853, Event, Gauss, Hamiltonian, Lagrangian, coordinates, parameters, propagate
 from canon.expression.graph.graph import Graph
 from canon.expression.symbols.symbol import acceleration, time
 from canon.flow import AccuracyWarning, WisdomHolman
@@ -151,6 +151,36 @@ def test_forces_that_hold_accelerations_join_the_inertia_of_their_own_row():
     np.testing.assert_allclose(propagate(carried, (0, 2), [0, 0, 0, 0]).final, [1, -2, 1, -2], rtol=1e-12)
     heavier = GibbsAppell([Particle(1, (x, y))], [x, y], forces=[-acceleration(x), -1])
     np.testing.assert_allclose(propagate(heavier, (0, 2), [0, 0, 1, 0]).final, [2, -2, 1, -2], rtol=1e-12)
+
+
+def test_no_balance_of_work_is_asked_of_rates_that_are_not_linear_in_u():
+    u = sp.Symbol("u", real=True)
+    bent = GibbsAppell([Particle(1, (x, y))], [x, y], u=[u], q_dot=[u, u**2], forces=[1, 0])
+    motion = propagate(bent, (0, 1), [0, 0, 1])
+    assert abs(motion.energy_error).max() < 1e-13
+    assert motion.work[-1] == pytest.approx(motion.energy[-1] - 1)
+    straight = GibbsAppell([Particle(1, (x, y))], [x, y], u=[u], q_dot=[u, 2 * u], forces=[1, 0])
+    motion = propagate(straight, (0, 1), [0, 0, 1])
+    assert motion.work[-1] == pytest.approx(motion.final[0])
+    assert abs(motion.energy_error).max() < 1e-13
+
+
+# parameters by orbit -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("iteration", ["fixed-point", "newton"])
+def test_a_large_parameter_by_orbit_does_not_hide_stages_that_have_not_converged(iteration):
+    mu, far, GM = parameters("mu", positive=True), 1.496e11, 1.327e20
+    kinetic = (x.momentum**2 + y.momentum**2) / 2
+    sun = Hamiltonian(kinetic - mu / sp.sqrt(x**2 + y**2), [x, y], [x.momentum, y.momentum])
+    start, day = np.array([far, 0, 0, np.sqrt(GM / far)]), 86400
+    how = {"method": Gauss(4, iteration=iteration), "step": 120 * day, "samples": 1}
+    alone = propagate(sun, (0, 2400 * day), start, parameters={mu: GM}, **how)
+    both = propagate(
+        sun, (0, 2400 * day), np.stack([start, start], 1), parameters={mu: np.array([GM, GM])}, **how
+    )
+    for orbit in both.final.T:
+        np.testing.assert_allclose(orbit, alone.final, rtol=1e-10)
 
 
 # names and numbers ---------------------------------------------------------------------------------
