@@ -120,6 +120,14 @@ def test_backwards_a_ball_moves_away_from_the_wall_that_it_is_about_to_strike():
             propagate(ball, (0, 1), [0, -2])
 
 
+def test_samples_that_all_stand_at_impacts_are_no_way_into_the_wall():
+    ball = UnilateralLagrangian(Lagrangian(y.dot**2 / 2 - 2 * y, [y]), [y], restitution=1)
+    for samples in (1, 3):
+        motion = propagate(ball, (0, 3), [0, 1], samples=samples)
+        assert [met.t for met in motion.events[:2]] == pytest.approx([1, 2])
+        assert abs(motion.y[0]).max() < 1e-13
+
+
 # Gibbs and Appell ----------------------------------------------------------------------------------
 
 
