@@ -1,7 +1,9 @@
 """Elastic impacts of systems in (q, q̇): the velocities after a wall g(q, t) = 0, ideal constraints being kept.
 
 The wall's impulse is along ∇g, that of the constraints along their rows: M Δ − Aᵀμ = ∇g, A Δ = 0, and
-q̇ → q̇ − 2 ġ Δ/(∇g·Δ) turns ġ round and keeps the kinetic energy where the wall is at rest.
+q̇ → q̇ − 2 ġ Δ/(∇g·Δ) turns ġ round and keeps the kinetic energy where the wall is at rest. With M(q, q̇) a finite
+impulse along ∇g changes q̇ along Δ/(∇g·Δ) only where that does not depend on q̇, and by that much only where ∇g·Δ is
+after the impact what it was before.
 """
 
 from __future__ import annotations
@@ -19,10 +21,11 @@ if TYPE_CHECKING:
 
     from sympy import Symbol
 
+    from canon.expression.graph.graph import Graph
     from canon.flow.equations.first_order_motion import FirstOrderMotion
     from canon.flow.run.event import Event
 
-__all__ = ["with_bounces"]
+__all__ = ["is_straight", "with_bounces"]
 
 
 def with_bounces(
@@ -42,7 +45,8 @@ def with_bounces(
     Raises
     ------
     ValueError
-        The system has no mass matrix to bounce with, or g is no wall g(q, t) = 0.
+        The system has no mass matrix to bounce with, or one that depends on the velocities so that they are not known
+        after the impact; or g is no wall g(q, t) = 0.
     """
     if all(event.action != "bounce" for event in events):
         return motion, tuple(events)
@@ -81,4 +85,17 @@ def _velocities_after(motion: FirstOrderMotion, event: Event, start: Mapping[Sym
     rate = graph.add([*map(graph.mul, zip(normal, speeds, strict=True)), graph.derivative(wall, motion.t)])
     across = graph.add(list(map(graph.mul, zip(normal, pushed, strict=True))))
     impulse = graph.scaled(-2, graph.mul((rate, graph.power(across, -1))))
-    return [graph.add((s, graph.mul((impulse, d)))) for s, d in zip(speeds, pushed, strict=True)]
+    after = [graph.add((s, graph.mul((impulse, d)))) for s, d in zip(speeds, pushed, strict=True)]
+    turned = graph.substitute([across], dict(zip(speeds, after, strict=True)))[0]
+    if turned != across or not is_straight(graph, pushed, across, v):
+        raise ValueError(
+            f"masses depend on the velocities, so it is not known how they bounce at {event}: give its action as "
+            "{v: …}"
+        )
+    return after
+
+
+def is_straight(graph: Graph, pushed: Sequence[int], across: int, v: Sequence[Symbol]) -> bool:
+    """Tell whether an impulse changes velocities along a direction Δ/(∇g·Δ) that does not depend on them."""
+    inverse = graph.power(across, -1)
+    return not graph.all_symbols([graph.mul((d, inverse)) for d in pushed]) & {*v}

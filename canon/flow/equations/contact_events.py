@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Symbol
 
+from canon.flow.equations.bounce import is_straight
 from canon.flow.equations.contact_walls import dot, is_touched, power_of_two, size_of_wall, values_of
 from canon.flow.equations.first_order_motion import Contact, Contacts
 from canon.flow.run.event import Event
@@ -64,7 +65,8 @@ class ContactEvents:
         Raises
         ------
         ValueError
-            A coefficient is not between 0 and 1.
+            A coefficient is not between 0 and 1, or masses depend on the velocities so that it does not say what an
+            impact does.
         """
         each, hidden = list[Contact](), dict[Symbol, Fraction]()
         unit = self.regimes.unit
@@ -134,17 +136,26 @@ class ContactEvents:
             return Event(fallen, -1, action, f"impact at {wall.f} = 0")
         shut = {graph.symbol(wall.switch): graph.number(self.regimes.unit)}
         force = graph.substitute([self.regimes.multipliers[i]], {**new, **shut})[0]
-        half = graph.scaled(Fraction(1, 2), graph.add((graph.one, graph.function("sign", force))))
-        action[wall.switch] = action[wall.armed] = self._name(graph.scaled(self.regimes.unit, half), "closed")
-        free = self._name(graph.add((graph.one, graph.negative(half))), "free")
+        # Closed where the force presses or vanishes, as at the start: s = sign λ gives 1 + (s − s²)/2.
+        s = graph.function("sign", force)
+        bent = graph.scaled(Fraction(1, 2), graph.add((s, graph.negative(graph.mul((s, s))))))
+        shut_again = graph.add((graph.one, bent))
+        unit = self.regimes.unit
+        action[wall.switch] = action[wall.armed] = self._name(graph.scaled(unit, shut_again), "closed")
+        free = self._name(graph.negative(bent), "free")
         action[wall.margin] = free * self._off(wall)
         return Event(fallen, -1, action, f"contact at {wall.f} = 0 closes")
 
     def _velocities_after(self, wall: Wall, e: Expr) -> dict[Symbol, int]:
         graph = self.graph
         factor = graph.negative(graph.add((graph.one, graph.from_sympy(e))))
-        across = graph.power(dot(graph, wall.normal, wall.pushed), -1)
-        impulse = graph.mul((factor, wall.rate, across))
+        across = dot(graph, wall.normal, wall.pushed)
+        if not is_straight(graph, wall.pushed, across, self.regimes.free.second):
+            raise ValueError(
+                f"masses depend on the velocities, so it is not known how they change at an impact at {wall.f} = 0: "
+                "leave out its restitution, and the motion ends there"
+            )
+        impulse = graph.mul((factor, wall.rate, graph.power(across, -1)))
         pushes = [graph.mul((impulse, push)) for push in wall.pushed]
         return {
             s: graph.add((graph.symbol(s), push))

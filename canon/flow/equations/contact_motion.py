@@ -21,7 +21,7 @@ from canon.flow.equations.contact_walls import (
     values_of,
     wall_of,
 )
-from canon.flow.equations.lagrangian_motion import lagrangian_motion, rate_of_pull
+from canon.flow.equations.lagrangian_motion import SPAN, lagrangian_motion, rate_of_pull
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -53,7 +53,8 @@ def contact_motion(system: UnilateralLagrangian, start: Mapping[Symbol, float]) 
     ------
     ValueError
         The start is beyond a wall or moves into it, the contacts that are closed there do not determine the
-        accelerations, or a coefficient of restitution is not between 0 and 1.
+        accelerations, a coefficient of restitution is not between 0 and 1, or it is given where masses depend on the
+        velocities so that it does not say what an impact does.
 
     Examples
     --------
@@ -73,12 +74,13 @@ def contact_motion(system: UnilateralLagrangian, start: Mapping[Symbol, float]) 
     unit = power_of_two(max(abs(float(start[s])) for s in free.state))
     regimes = Regimes(free, walls, unit * _SWITCH, Fraction(alpha))
     motion = regimes.motion()
-    named = dict(motion.named)
+    named = {s: node for s, node in motion.named.items() if s not in start}  # a parameter keeps its name
     contacts = ContactEvents(regimes, start, named).contacts(system.restitution, at_start)
     return replace(motion, named=named, contacts=contacts)
 
 
 def _check_side(free: FirstOrderMotion, walls: Sequence[Wall], start: Mapping[Symbol, float]) -> None:
+    onwards = math.copysign(1.0, start.get(SPAN, 1.0))
     for wall in walls:
         f, rate = map(float, values_of(free.graph, [wall.value, wall.rate], start))
         if not (math.isfinite(f) and math.isfinite(rate)):
@@ -90,10 +92,11 @@ def _check_side(free: FirstOrderMotion, walls: Sequence[Wall], start: Mapping[Sy
                 f"the start is beyond a wall: {wall.f} is {f:.3g} there, and a unilateral constraint keeps it ≥ 0; "
                 "start on the other side, or turn the sign of the constraint round"
             )
-        if is_touched(free, wall, start) and rate < -NEAR * _speed(free, wall, start):
+        if is_touched(free, wall, start) and onwards * rate < -NEAR * _speed(free, wall, start):
+            back = "" if onwards > 0 else ", and time runs back"
             raise ValueError(
-                f"the start moves into a wall: {wall.f} = 0 falls at the rate {rate:.3g}; start with the velocities "
-                "after the impact, or before it, where the function is positive"
+                f"the start moves into a wall: {wall.f} = 0 there, with the rate {rate:.3g}{back}; start with the "
+                "velocities after the impact, or before it, where the function is positive"
             )
 
 

@@ -106,18 +106,21 @@ def check_contacts(moving: MovingSystem, samples: Samples) -> None:
     check_impacts_at_once(moving, samples)
     equations = moving.equations
     values = dict(zip(equations.inputs, (*samples.y[:, :, 0], samples.t), strict=True))
-    graph, state = equations.graph, (*equations.q, *equations.p)
+    graph, known = equations.graph, moving.state
+    sizes = {s: np.abs(values[s]) for s in known}
+    for s, v in zip(moving.q, moving.second, strict=True):
+        # The places of all samples may be those of impacts, where only the way between them has a size.
+        sizes[s] = sizes[s] + _VIOLATED * np.ptp(samples.t) * sizes[v]
     for contact in contacts.each:
         for node, words in (
             (contact.value, "passes a wall"),
             (contact.multiplier, "is held by a contact that pulls"),
         ):
-            known = [s for s in state if s in moving.state]
             along, *slopes = (
                 np.broadcast_to(np.asarray(x, dtype=np.float64), samples.t.shape)
                 for x in graph.evaluate([node, *graph.gradient(node, known)], values)
             )
-            size = sum((np.abs(a * values[s]) for a, s in zip(slopes, known, strict=True)), np.abs(along))
+            size = sum((np.abs(a) * sizes[s] for a, s in zip(slopes, known, strict=True)), np.abs(along))
             wrong = along < -_VIOLATED * size.max()
             if wrong.any():
                 first = float(samples.t[int(np.argmax(wrong))])

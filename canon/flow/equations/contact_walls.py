@@ -190,7 +190,7 @@ def wall_of(free: FirstOrderMotion, f: Expr, start: Mapping[Symbol, float]) -> W
 
 
 def size_of_wall(free: FirstOrderMotion, wall: Wall, start: Mapping[Symbol, float]) -> float:
-    """Return the size of f's terms at the start, every coordinate counting for at least a part of the largest."""
+    """Return the size of f's terms at the start; where all places are 0 there, f for places of size 1."""
     slopes = np.abs(values_of(free.graph, wall.normal, start))
     places = np.abs([float(start[s]) for s in free.q])
     f = abs(float(values_of(free.graph, [wall.value], start)[0]))

@@ -142,6 +142,7 @@ def lagrangian_motion(
     named = dict(zip((acceleration(s) for s in q), accelerations, strict=True))
     named |= dict(zip((momentum(s) for s in q), momenta, strict=True))
     named |= {multiplier_symbol(i): node for i, node in enumerate(multipliers, 1)}
+    named = {s: node for s, node in named.items() if s not in start}  # a parameter keeps its name
     return FirstOrderMotion(
         kind="constrained Lagrangian" if multipliers else "Lagrangian",
         graph=graph,

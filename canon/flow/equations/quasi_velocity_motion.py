@@ -1,8 +1,9 @@
 """Motion in quasi-velocities, and of bodies by Newton and Euler: the state is (q, u), of Newton and Euler (q, q̇).
 
 The equations are linear in the rates of u and are solved on the graph. The energy of bodies is T + V, for Newton and
-Euler T alone. Where nothing depends on time and q̇ is homogeneous in u it changes by the work of the forces; where
-bodies are moved as time says, what moves them does work too, and the rate of T + V along the motion is taken for it.
+Euler T alone, V without its part linear in q̇. Where nothing depends on time and q̇ is linear in u it changes by the work
+of the forces; where bodies are moved as time says, what moves them does work too, and the rate of the energy along the
+motion is taken for it, as it is where q̇ is not proportional to u.
 """
 
 from __future__ import annotations
@@ -89,14 +90,17 @@ def appell_motion(given: GibbsAppell, start: Mapping[Symbol, float]) -> FirstOrd
     slopes = graph.gradient(graph.from_sympy(given.gibbs_function), kinematics.u_dot)
     forces = [graph.negative(graph.from_sympy(U)) for U in given.forces]
     nodes = [graph.add(pair) for pair in zip(slopes, forces, strict=True)]
-    rates = _solved(graph, kinematics.u_dot, nodes, start, symmetric=True)
+    # A force that holds accelerations joins the inertia on its own row alone.
+    symmetric = not graph.all_symbols(forces) & {*kinematics.u_dot}
+    rates = _solved(graph, kinematics.u_dot, nodes, start, symmetric=symmetric)
     q_dot, named = _in_quasi_velocities(graph, kinematics, rates)
-    V = graph.from_sympy(given.V)
-    energy = graph.add((graph.from_sympy(_kinetic(given.bodies, kinematics)), V))
-    if _at_rest_without_u(kinematics, given.bodies):
-        along_q = [graph.from_sympy(exchanged(Q, kinematics.through)) for Q in given.Q]
+    energy = graph.from_sympy(_kinetic(given.bodies, kinematics) + _potential_energy(given))
+    if _is_linear_in_u(kinematics, given.bodies):
+        solved = {graph.symbol(s): node for s, node in zip(kinematics.u_dot, rates, strict=True)}
+        along_q = graph.substitute([graph.from_sympy(kinematics.along(Q)) for Q in given.Q], solved)
         work = [graph.mul(pair) for pair in zip(along_q, q_dot, strict=True)]
-        power = graph.add((*work, graph.derivative(V, kinematics.t)))
+        driven = graph.from_sympy(kinematics.along(given.V.diff(kinematics.t)))
+        power = graph.add((*work, driven))
     else:
         state = (*kinematics.q, *kinematics.u, kinematics.t)
         slopes = graph.gradient(energy, state)
@@ -201,14 +205,25 @@ def _letter(kinematics: Kinematics) -> str:
     return "v" if kinematics.u == tuple(map(velocity, kinematics.q)) else "u"
 
 
-def _at_rest_without_u(kinematics: Kinematics, bodies: Sequence[Body]) -> bool:
-    """Return whether nothing moves while all u are 0."""
+def _is_linear_in_u(kinematics: Kinematics, bodies: Sequence[Body]) -> bool:
+    """Return whether all that moves does so in proportion to u, so that the forces alone do work."""
     still = dict.fromkeys(kinematics.u, sp.S.Zero)
     rates = [*kinematics.q_dot]
     for body in bodies:
         rates += [kinematics.rate(place) for place in body.r]
         rates += body.angular_velocity(kinematics)
-    return all(exchanged(rate, still) == 0 and not rate.has(kinematics.t) for rate in rates)
+    return all(
+        exchanged(rate, still) == 0
+        and not rate.has(kinematics.t)
+        and not any(rate.diff(w).has(*kinematics.u) for w in kinematics.u)
+        for rate in rates
+    )
+
+
+def _potential_energy(given: GibbsAppell) -> Expr:
+    """Return V − Σ q̇ ∂V/∂q̇ along the quasi-velocities: the part of V that is linear in q̇ stores no energy."""
+    swept = (velocity(s) * given.V.diff(velocity(s)) for s in given.q)
+    return given.kinematics.along(given.V - sp.Add(*swept))
 
 
 def _kinetic(bodies: Sequence[Body], kinematics: Kinematics) -> Expr:

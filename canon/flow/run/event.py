@@ -53,7 +53,8 @@ class Event:
     action
         ``"record"``: note time and state. ``"stop"``: end the motion there. ``"bounce"``: reflect it
         elastically from the wall g(q, t) = 0, p → p − 2 ġ ∇g/(∇g·M⁻¹∇g), which keeps H where the wall is at
-        rest; H is to be quadratic in p. Or new values of some coordinates and momenta: ``{p: -p/2}``.
+        rest; H is to be quadratic in p, and a Lagrangian quadratic in q̇ at least in what an impact
+        at this wall changes. Or new values of some coordinates and momenta: ``{p: -p/2}``.
     name
         What to call it.
 

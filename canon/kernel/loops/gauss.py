@@ -288,9 +288,15 @@ class GaussIteration:
         g.store(g.intrinsic("minnum", before, difference), self.least, i)
         half = i * _HALVES // self.size
         g.store(g.intrinsic("maxnum", g.load(self.change, half), difference), self.change, half)
-        far = g.algebra("add", _size(v, g, new), _size(v, g, v.load(self.place, i)))
-        g.store(g.intrinsic("maxnum", g.load(self.reach, half), far), self.reach, half)
+        if not self._is_parameter(i):
+            far = g.algebra("add", _size(v, g, new), _size(v, g, v.load(self.place, i)))
+            g.store(g.intrinsic("maxnum", g.load(self.reach, half), far), self.reach, half)
         d.store(d.select(decreasing, self._zero, d.load(self.done, 0)), self.done, 0)
+
+    def _is_parameter(self, i: int) -> bool:
+        """Tell whether a component is a parameter by orbit: it stays what it is, in whatever unit it has."""
+        system, n = self.system, len(self.system.q)
+        return i % n >= n - system.varying and system.rates[i] == system.graph.zero
 
     def _largest_change(self) -> str:
         """Return the largest change of a coordinate or momentum in each lane."""

@@ -62,6 +62,8 @@ def relativistic_form(system: HamiltonEquations) -> RelativisticForm | None:
     for i, row in enumerate(seconds):
         if any(row[j] != (seconds[0][0] if i == j else graph.zero) for j in range(n)):
             return None
+    if s == graph.zero:
+        return None
     at_rest = graph.substitute(slopes, {graph.symbol(each): graph.zero for each in p})
     inverse = graph.power(graph.scaled(-2, s), -1)
     A = [graph.mul((slope, inverse)) for slope in at_rest]

@@ -366,7 +366,7 @@ def exact_number(value: Any, what: str) -> Fraction:
         if not hasattr(value, "as_integer_ratio") and getattr(value, "ndim", None) == 0:
             return exact_number(value.item(), what)  # NumPy's whole numbers, and arrays of one number
         return Fraction(*value.as_integer_ratio())
-    except (ValueError, OverflowError, AttributeError):
+    except (ValueError, OverflowError, AttributeError, ZeroDivisionError):
         raise ValueError(f"{what} = {value!r} is no finite real number") from None
 
 

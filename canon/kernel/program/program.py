@@ -27,6 +27,9 @@ __all__ = ["Instruction", "Program", "exact_value", "interpret", "program", "wit
 
 _CONSTANT_DIGITS = 100
 
+_CONSTANT_BITS = 2**20
+"""Constants below 2^−this are 0 and those above 2^this are refused: exact ones would take as many bits."""
+
 
 class Instruction(NamedTuple):
     """One operation on earlier registers.
@@ -134,7 +137,13 @@ def _advice(unknown: Sequence[str], variables: Sequence[Symbol]) -> str:
 
 
 def exact_value(graph: Graph, node: int) -> Fraction:
-    """Return the value of a node without symbols: exact where rational, else to 100 digits."""
+    """Return the value of a node without symbols: exact where rational, else to 100 digits.
+
+    Raises
+    ------
+    ValueError
+        The value is not real, not finite, or too large for any arithmetic here.
+    """
     kind, _, value = graph.nodes[node]
     if kind == "number":
         return value
@@ -145,6 +154,11 @@ def exact_value(graph: Graph, node: int) -> Fraction:
             "H has real values, so write it with real constants"
         )
     mantissa, exponent = found.man_exp  # of the absolute value
+    places = int(mantissa).bit_length() + int(exponent)
+    if places > _CONSTANT_BITS or (not mantissa and found != 0):
+        raise ValueError(f"the constant {graph.to_sympy(node)} is not finite, or too large to compute with")
+    if places < -_CONSTANT_BITS:
+        return Fraction(0)
     size = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
     return -size if found < 0 else size
 

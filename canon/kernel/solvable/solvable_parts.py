@@ -240,7 +240,10 @@ def _planets(read: Terms) -> Planets:
         )
     star = max(bodies, key=read.mass_of)  # the first of equals
     places = [star, *(body for body in bodies if body != star)]
-    strength = {frozenset((pair.first, pair.second)): pair.strength for pair in read.pairs}
+    strength = dict[frozenset[tuple[int, ...]], Fraction]()
+    for pair in read.pairs:  # a pair may stand twice, as |q₁ − q₂| and |q₂ − q₁|
+        both = frozenset((pair.first, pair.second))
+        strength[both] = strength.get(both, Fraction(0)) + pair.strength
     table = tuple(tuple(strength.get(frozenset((a, b)), Fraction(0)) for b in places) for a in places)
     for i, row in enumerate(table[1:], start=1):
         if sum(row[:i]) <= 0:
