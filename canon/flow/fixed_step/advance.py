@@ -14,6 +14,8 @@ from canon.flow.fixed_step.loop_buffers import LoopBuffers, LoopObservables, Mem
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    import numpy.typing as npt
+
     from canon.kernel.llvm.loop import Loop
 
 __all__ = ["AdvancedStates", "Interruption", "advance_orbits"]
@@ -78,6 +80,7 @@ def advance_orbits(
     memory: Memory | None = None,
     rows: Sequence[int] | None = None,
     many: int = _MANY,
+    whose: npt.NDArray[np.int64] | None = None,
 ) -> AdvancedStates:
     """Advance orbits step by step and keep their states at the wanted step numbers.
 
@@ -104,13 +107,15 @@ def advance_orbits(
         The components that are coordinates and momenta, for messages.
     many
         From so many stops on, they are passed in compiled code; the states are the same bit for bit.
+    whose
+        The numbers of the orbits, where these are some of many, for messages.
 
     Raises
     ------
     NonFiniteStateError
         A state is not finite; the error knows the last finite one.
     """
-    buffers = LoopBuffers(loop, high, low, coefficients, watch, memory)
+    buffers = LoopBuffers(loop, high, low, coefficients, watch, memory, whose)
     rows_kept = _Rows(buffers, len(stops))
     started, slices = time.thread_time(), _Slices(buffers, stops[0], stops[-1], rows, progress)
     one_by_one = len(stops) < many

@@ -14,7 +14,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from canon.cached_property import cached_property
-from canon.expression.symbols.user_input import counted
+from canon.expression.symbols.user_input import counted, given_expression
 from canon.flow.method.adaptive_methods import DOP853, Taylor
 from canon.flow.method.constrained_method import NonholonomicLeapfrog, Rattle
 from canon.flow.method.energy_keeping_method import AverageVectorField
@@ -343,6 +343,8 @@ class TimeTransformed:
             raise ValueError(
                 "say how long a step is to be where: TimeTransformed(Gauss(6), g=…), such as g = r near a centre"
             )
+        if self.g is not None:
+            object.__setattr__(self, "g", given_expression(self.g, "g of TimeTransformed"))
 
     def __str__(self) -> str:
         return f"{self.method}, time-transformed"

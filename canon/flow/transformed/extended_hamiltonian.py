@@ -23,6 +23,7 @@ import sympy as sp
 
 from canon.flow.run.event import PreparedEvent, prepared_events
 from canon.kernel.program.program import exact_value
+from canon.mechanics.algebra.dynamicsymbols import in_own_time
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -81,7 +82,7 @@ def extended(hamiltonian: HamiltonianSystem, method: TimeTransformed) -> Extende
     energy: Any = hamiltonian.H
     q, p = (*hamiltonian.q, t), (*hamiltonian.p, p_t)
     if method.g is not None:
-        g: Any = sp.sympify(method.g, strict=True)
+        g: Any = in_own_time(method.g, (*hamiltonian.q, *hamiltonian.p), t)
         return Extended(g * (energy + p_t), q, p, s, g)
     kinetic, potential = _split(hamiltonian)
     return Extended(sp.log(kinetic + p_t) - sp.log(-potential), q, p, s, -1 / potential)
