@@ -79,8 +79,8 @@ def advance_orbits(
     watch: LoopObservables | None = None,
     memory: Memory | None = None,
     rows: Sequence[int] | None = None,
-    many: int = _MANY,
     whose: npt.NDArray[np.int64] | None = None,
+    many: int = _MANY,
 ) -> AdvancedStates:
     """Advance orbits step by step and keep their states at the wanted step numbers.
 
@@ -105,10 +105,10 @@ def advance_orbits(
         What an implicit method kept beyond the state, where a run is resumed.
     rows
         The components that are coordinates and momenta, for messages.
-    many
-        From so many stops on, they are passed in compiled code; the states are the same bit for bit.
     whose
         The numbers of the orbits, where these are some of many, for messages.
+    many
+        From so many stops on, they are passed in compiled code; the states are the same bit for bit.
 
     Raises
     ------

@@ -60,7 +60,7 @@ class Event:
     Raises
     ------
     TypeError
-        The function is no expression.
+        The function or a new value is no expression.
     ValueError
         The direction or the action is none of these.
 
@@ -89,6 +89,9 @@ class Event:
             raise ValueError(
                 f"action={self.action!r}: 'record', 'stop', 'bounce', or new values {{p: -p}} of the state"
             )
+        if isinstance(self.action, Mapping):
+            for variable, value in self.action.items():
+                given_expression(value, f"the new {variable} of the event {self}")
 
     def __str__(self) -> str:
         return self.name or f"{self.function} = 0"
@@ -177,7 +180,10 @@ def _prepared(system: HamiltonEquations, event: Event) -> PreparedEvent:
             f"the event {event} changes {', '.join(strange)}: it can change coordinates and momenta"
         )
     jump = [
-        system.node(sp.sympify(given[s], strict=True), f"the new {s} of the event {event}")
+        system.node(
+            in_own_time(sp.sympify(given[s], strict=True), state, system.t),
+            f"the new {s} of the event {event}",
+        )
         if s in given
         else graph.symbol(s)
         for s in state

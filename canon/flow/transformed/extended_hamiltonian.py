@@ -94,7 +94,7 @@ def _split(hamiltonian: HamiltonianSystem) -> tuple[Any, Any]:
     if energy.is_polynomial(*hamiltonian.q, *hamiltonian.p):
         energy = sp.expand(energy)
     kinetic, potential = sp.S.Zero, sp.S.Zero
-    for term in sp.Add.make_args(energy):
+    for term in _terms(energy, hamiltonian):
         moves, rests = term.has(*hamiltonian.p), term.has(*hamiltonian.q, hamiltonian.t)
         if moves and rests:
             raise ValueError(
@@ -103,6 +103,15 @@ def _split(hamiltonian: HamiltonianSystem) -> tuple[Any, Any]:
             )
         kinetic, potential = (kinetic + term, potential) if moves else (kinetic, potential + term)
     return kinetic, potential
+
+
+def _terms(energy: Any, hamiltonian: HamiltonianSystem) -> list[Any]:
+    """Return the terms of a sum; those of a product such as (T + V)/m where it holds momenta beside coordinates."""
+    terms = list[Any]()
+    for term in sp.Add.make_args(energy):
+        mixed = term.has(*hamiltonian.p) and term.has(*hamiltonian.q, hamiltonian.t)
+        terms += sp.Add.make_args(sp.expand_mul(term)) if mixed else [term]
+    return terms
 
 
 @dataclass(frozen=True, eq=False)
