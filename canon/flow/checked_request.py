@@ -6,7 +6,6 @@ import functools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -30,6 +29,7 @@ from canon.mechanics.algebra.dynamicsymbols import in_own_time
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from fractions import Fraction
 
     import numpy.typing as npt
     from sympy import Expr
@@ -104,7 +104,7 @@ def course_of(request: Request) -> HamiltonianCourse:
     def in_fictitious_time(method: TimeTransformed) -> ExtendedSystem:
         larger = extended(hamiltonian, method)
         equations = hamilton_equations_of(larger, fixed, tuple(varying))
-        return extended_system(larger, equations, hamiltonian, Fraction(request.step or 0))
+        return extended_system(larger, equations, hamiltonian, exact_number(request.step, "step"))
 
     made = course_with(request, system, two_ends(request.t_span), in_fictitious_time)
     return HamiltonianCourse(made, (*hamiltonian.q, *hamiltonian.p), FrozenMapping(varying))
@@ -317,7 +317,8 @@ def _states(y0: Any, n: int) -> tuple[Array, Array]:
 
 
 def _check_transformed(method: TimeTransformed, step: float | None, cadence: int | None) -> None:
-    if step is None or not (math.isfinite(step) and step > 0):
+    wrong = step is None or (isinstance(step, float) and not math.isfinite(step))
+    if wrong or not exact_number(step, "step") > 0:
         raise ValueError(f"step={step}: {method} takes the size in t of its first step, a positive number")
     if cadence is not None:
         raise ValueError(

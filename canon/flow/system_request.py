@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 from sympy import sympify
 
 from canon.flow.checked_request import course_of, functions_by_name, refuse_swapped, two_ends
+from canon.flow.method.method import TimeTransformed
 from canon.flow.run.event import Event
 from canon.flow.system.hamiltonian_map import (
     DRIFT_AND_KICK,
@@ -178,5 +179,8 @@ def _symbols_of(request: Request) -> set[Any]:
         if isinstance(event.action, Mapping):
             functions += event.action.values()
         functions.append(event.function)
+    # A time transformation may hold parameters of its own, such as a length below which it no longer slows down.
+    if isinstance(request.method, TimeTransformed) and request.method.g is not None:
+        functions.append(request.method.g)
     others = {symbol for f in functions for symbol in sympify(f, strict=True).free_symbols}
     return others | symbols_in(sympify(request.system.H, strict=True))

@@ -90,13 +90,14 @@ class Task:
         ValueError
             The end lies behind, or is not a whole number of fixed steps away.
         """
-        plan, wanted = self.plan, samples or self.plan.wanted
+        plan = self.plan
         if self.plan.wanted:  # its instants were not known before
             plan = replace(plan, instants=found.t, wanted=0)
         last = plan.last(len(found.t) - 1)
         if self.plan.wanted and times is None:
-            ends = plan.continued(sampling((last, end), 1, None)).instants[[0, -1]]
-            return replace(self, plan=replace(plan, instants=ends, wanted=wanted))
+            more = sampling((last, end), self.plan.wanted if samples is None else samples, None)
+            ends = plan.continued(replace(more, samples=1)).instants[[0, -1]]
+            return replace(self, plan=replace(plan, instants=ends, wanted=more.samples))
         if samples is None and times is None:
             density = (len(found.t) - 1) / abs(found.t[-1] - found.t[0])
             samples = max(1, round(density * abs(float(end - last))))

@@ -415,6 +415,10 @@ class Interrupted(KeyboardInterrupt):
         )
         self.motion = motion
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return what makes this error again, in another process too."""
+        return type(self), (self.motion,)
+
 
 def finished(record: RunRecord) -> Trajectory:
     """Return the trajectory of a record whose run was not interrupted.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -62,6 +62,10 @@ class NoPeriodicOrbitError(ValueError):
     def __init__(self, message: str, y: Array, period: float, defect: float) -> None:
         super().__init__(message)
         self.y, self.period, self.defect = y, period, defect
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return what makes this error again, in another process too."""
+        return type(self), (str(self), self.y, self.period, self.defect)
 
 
 @dataclass(frozen=True, eq=False)

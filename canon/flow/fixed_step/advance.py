@@ -14,6 +14,8 @@ from canon.flow.fixed_step.loop_buffers import LoopBuffers, LoopObservables, Mem
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    import numpy.typing as npt
+
     from canon.kernel.llvm.loop import Loop
 
 __all__ = ["AdvancedStates", "Interruption", "advance_orbits"]
@@ -77,6 +79,7 @@ def advance_orbits(
     watch: LoopObservables | None = None,
     memory: Memory | None = None,
     rows: Sequence[int] | None = None,
+    whose: npt.NDArray[np.int64] | None = None,
     many: int = _MANY,
 ) -> AdvancedStates:
     """Advance orbits step by step and keep their states at the wanted step numbers.
@@ -102,6 +105,8 @@ def advance_orbits(
         What an implicit method kept beyond the state, where a run is resumed.
     rows
         The components that are coordinates and momenta, for messages.
+    whose
+        The numbers of the orbits, where these are some of many, for messages.
     many
         From so many stops on, they are passed in compiled code; the states are the same bit for bit.
 
@@ -110,7 +115,7 @@ def advance_orbits(
     NonFiniteStateError
         A state is not finite; the error knows the last finite one.
     """
-    buffers = LoopBuffers(loop, high, low, coefficients, watch, memory)
+    buffers = LoopBuffers(loop, high, low, coefficients, watch, memory, whose)
     rows_kept = _Rows(buffers, len(stops))
     started, slices = time.thread_time(), _Slices(buffers, stops[0], stops[-1], rows, progress)
     one_by_one = len(stops) < many

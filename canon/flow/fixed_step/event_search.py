@@ -211,6 +211,7 @@ class EventLocator:
         following = self._rest_of_step(
             rest.n, place, base, self.steps.moved(base, rest.n, place, Fraction(1))
         )
+        self._renew_sides(self.values_and_rates(here, t), following)
         self.sides[i] = _sign(following.latest[i][1]) or -self.sides[i]
         if self.events[i].switches or self.events[i].resets:
             value, rate = self.values_and_rates(base, t)[i]
@@ -218,6 +219,12 @@ class EventLocator:
             if self.events[i].switches or abs(value) > _AWAY * way > 0:
                 self.sides[i] = _sign(value) or self.sides[i]
         return following
+
+    def _renew_sides(self, before: Sequence[tuple[float, float]], after: _RestOfStep) -> None:
+        """Note the sides of those functions that a change of the state has moved; by a jump none of them crosses."""
+        for i, ((g, _), moved) in enumerate(zip(before, after.at_begin, strict=True)):
+            if moved != g:
+                self.sides[i] = _sign(moved) or _sign(after.latest[i][1])
 
     def _record(
         self, event: PreparedEvent, t: Fraction, here: LoopState, rising: bool, after: LoopState | None

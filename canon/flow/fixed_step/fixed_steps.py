@@ -166,8 +166,9 @@ def _on_threads(
         chosen = parts[k].ravel()
         own = None if watch is None else dataclasses.replace(watch, start=watch.start[chosen])
         kept = None if memory is None else memory[own_blocks[k]]
+        whose = chosen if orbits > 1 else None
         found = advance_orbits(
-            loop, high[:, chosen], low[:, chosen], coefficients, stops, report, own, kept, rows
+            loop, high[:, chosen], low[:, chosen], coefficients, stops, report, own, kept, rows, whose=whose
         )
         if found.high.shape[1] < len(stops):
             stopped.set()

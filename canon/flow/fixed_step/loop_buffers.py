@@ -59,6 +59,8 @@ class LoopBuffers:
         Observables to follow.
     memory
         What an implicit method kept beyond the state, from :meth:`beyond` of earlier buffers.
+    whose
+        The numbers that messages call the orbits by, where these are some of many; from 0 on where None.
     """
 
     def __init__(
@@ -69,9 +71,11 @@ class LoopBuffers:
         coefficients: tuple[Array, Array],
         watch: LoopObservables | None = None,
         memory: Memory | None = None,
+        whose: npt.NDArray[np.int64] | None = None,
     ) -> None:
         self.loop, number = loop, loop.number
         self.size, self.orbits = high.shape
+        self.whose = np.arange(self.orbits) if whose is None and self.orbits > 1 else whose
         self.blocks = self.orbits // number.lanes
         # A compensated state starts with its low part in the compensation, any other rounds it to its type.
         low = self._by_block(low)
@@ -186,8 +190,19 @@ class LoopBuffers:
         """Return what lies beyond the states in copies of these buffers' e, shape (…, blocks, …)."""
         return e[..., self.size * self._scalars :]
 
+    def lost_orbits(self) -> npt.NDArray[np.bool_]:
+        """Return of each orbit whether its state is not finite."""
+        y = self.y.reshape(self.blocks, self.size, -1, self.loop.number.lanes)
+        return ~np.isfinite(y).all(axis=(1, 2)).ravel()
+
     def lost(
-        self, y: Memory, e: Memory, first: int, steps: int, rows: Sequence[int] | None
+        self,
+        y: Memory,
+        e: Memory,
+        first: int,
+        steps: int,
+        rows: Sequence[int] | None,
+        wanted: npt.NDArray[np.bool_] | None = None,
     ) -> NonFiniteStateError:
         """Find the last finite state of the first orbit that was lost, halving the slice of steps.
 
@@ -199,10 +214,11 @@ class LoopBuffers:
             The slice.
         rows
             The components that are coordinates and momenta; all of them where None.
+        wanted
+            Of each orbit whether its loss matters; all of them where None.
         """
-        number = self.loop.number
-        lost = np.argwhere(~np.isfinite(self.y.reshape(self.blocks, self.size, -1, number.lanes)))
-        block, _, _, lane = (int(index) for index in lost[0])
+        number, lost = self.loop.number, self.lost_orbits()
+        block, lane = divmod(int(np.argmax(lost if wanted is None else lost & wanted)), number.lanes)
         length = self.y.size // self.blocks
         y, e = y[block * length : (block + 1) * length].copy(), e[block].copy()
 
@@ -220,7 +236,7 @@ class LoopBuffers:
         self._call(y.copy(), after, first, 1, 1)
         state = number.unpacked(y)[0][:, lane]
         change = float(after[(self.size + 1) * self._scalars]) if self.loop.implicit else 0.0
-        orbit = block * number.lanes + lane if self.orbits > 1 else None
+        orbit = None if self.whose is None else int(self.whose[block * number.lanes + lane])
         state = state if rows is None else state[list(rows)]
         return _complaint(self.loop, self.t0 + first * self.h, first + 1, state, change, orbit)
 

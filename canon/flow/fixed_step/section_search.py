@@ -117,7 +117,8 @@ def section_places(
     blocks = -(-orbits // lanes)
     # The last block is filled up with copies of the last orbit.
     filled = np.minimum(np.arange(blocks * lanes), orbits - 1).reshape(blocks, lanes)
-    search = _Search(system, steps, count, surface, direction, _MANY if wanted is None else wanted)
+    enough = _MANY if wanted is None else wanted
+    search = _Search(system, steps, count, surface, direction, enough, several=orbits > 1)
     search.compile()
     stopped, done, lock = threading.Event(), [0], threading.Lock()
 
@@ -201,6 +202,7 @@ class _Search:
     surface: tuple[int, int]
     direction: int
     wanted: int
+    several: bool
 
     def compile(self) -> None:
         """Compile what threads would each compile for themselves."""
@@ -213,7 +215,7 @@ class _Search:
         """Return the places of one block of orbits, found as often as the memory for what is noted is full."""
         loop, lanes = self.steps.loop, self.steps.loop.number.lanes
         code = _kept_search(self.system, self.surface[0], loop, self.direction)
-        buffers = LoopBuffers(loop, high, low, self.steps.pairs)
+        buffers = LoopBuffers(loop, high, low, self.steps.pairs, whose=orbits if self.several else None)
         seen = np.zeros((2, lanes), dtype=loop.number.dtype)
         seen[0] = self._values(high, low)
         room = max(_ROOM, 2 * lanes)
@@ -229,8 +231,10 @@ class _Search:
                 noted.where.ctypes.data, counts.ctypes.data, done, min(_STEPS, self.count - done), room, self.wanted,
             )  # fmt: skip
             done = int(counts[lanes + 1])
-            if not buffers.finite():
-                raise buffers.lost(*before, begun, done - begun, self.system.rows)
+            # An orbit that has its places already goes on only for the others beside it, and may be lost.
+            unfinished = counts[:lanes] < self.wanted
+            if not buffers.finite() and (buffers.lost_orbits() & unfinished).any():
+                raise buffers.lost(*before, begun, done - begun, self.system.rows, unfinished)
             found.append(self._places(noted, int(counts[lanes]), orbits))
         own = np.unique(orbits).size
         found = found or [self._places(noted, 0, orbits)]

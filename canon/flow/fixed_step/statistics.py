@@ -10,6 +10,7 @@ import numpy as np
 
 from canon.flow.fixed_step.loop_buffers import LoopObservables
 from canon.flow.run.observables_along import values_in
+from canon.flow.run.sampling_plan import is_count
 from canon.kernel.loops.statistics_loop import statistics_function, wide_number
 
 if TYPE_CHECKING:
@@ -44,8 +45,8 @@ def loop_observables(
         The cadence is no positive whole number; or the state is in x87 numbers or double-double and an
         observable holds a function that double-double does not have.
     """
-    if cadence < 1 or cadence != int(cadence):
-        raise ValueError(f"cadence={cadence}: give a number of steps, 1 or more")
+    if not is_count(cadence):
+        raise ValueError(f"cadence={cadence!r}: give a number of steps, 1 or more")
     wide = wide_number(loop.number)
     high, low = states
     if not loop.compensated:  # the loop starts from the state rounded to its numbers

@@ -14,7 +14,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from canon.cached_property import cached_property
-from canon.expression.symbols.user_input import counted
+from canon.expression.symbols.user_input import counted, given_expression
 from canon.flow.method.adaptive_methods import DOP853, Taylor
 from canon.flow.method.constrained_method import NonholonomicLeapfrog, Rattle
 from canon.flow.method.energy_keeping_method import AverageVectorField
@@ -71,7 +71,7 @@ class Splitting:
     Raises
     ------
     ValueError
-        No such method; or coefficients whose number is wrong or which do not add up to 1.
+        No such method; or coefficients whose number is wrong or which do not add up to 1; or the parts are not two.
 
     Examples
     --------
@@ -95,11 +95,11 @@ class Splitting:
         b: Sequence[Coefficient] | None = None,
         parts: tuple[Expr, Expr] | None = None,
     ) -> None:
-        object.__setattr__(self, "parts", parts)
+        object.__setattr__(self, "parts", _two_parts(parts))
         if (name is None) == (a is None) or (a is None) != (b is None):
             raise ValueError("say which splitting: Splitting('kahan-li-8'), or Splitting(a=[…], b=[…])")
         if name is not None:
-            if name not in SCHEMES:
+            if name not in tuple(SCHEMES):  # by comparison: a list has no hash
                 raise ValueError(f"no splitting is called {name!r}; there are {', '.join(SCHEMES)}")
             object.__setattr__(self, "scheme", SCHEMES[name])
         elif a is not None and b is not None:
@@ -159,6 +159,16 @@ class Splitting:
     def citation(self) -> str:
         """Where the method was published."""
         return self.scheme.citation
+
+
+def _two_parts(parts: Sequence[Expr] | None) -> tuple[Expr, Expr] | None:
+    """Return parts as they can be kept."""
+    if parts is None:
+        return None
+    given = tuple(parts) if hasattr(parts, "__iter__") else (parts,)
+    if len(given) != 2:
+        raise ValueError(f"parts={parts}: give the two parts of H = H0 + H1, parts=(H0, H1)")
+    return given
 
 
 def _own_scheme(a: Sequence[Coefficient], b: Sequence[Coefficient]) -> Scheme:
@@ -227,6 +237,7 @@ class Gauss:
     def __post_init__(self) -> None:
         if self.stages not in range(1, HIGHEST_STAGES + 1):
             raise ValueError(f"Gauss({self.stages}): the number of stages is 1 … {HIGHEST_STAGES}")
+        object.__setattr__(self, "stages", int(self.stages))
         check_iteration(self.iteration)
 
     @property
@@ -343,6 +354,8 @@ class TimeTransformed:
             raise ValueError(
                 "say how long a step is to be where: TimeTransformed(Gauss(6), g=…), such as g = r near a centre"
             )
+        if self.g is not None:
+            object.__setattr__(self, "g", given_expression(self.g, "g of TimeTransformed"))
 
     def __str__(self) -> str:
         return f"{self.method}, time-transformed"

@@ -44,7 +44,8 @@ _NUMBERED = re.compile(r"(gauss|saba|sbab)([0-9]{1,3})")
 _NEWTON = re.compile(r"gauss([0-9]{1,3})newton")
 
 _TAO = re.compile(
-    r"\s*tao[-_ ]?([0-9]{1,3})[,;]?\s*omega\s*=?\s*([0-9.]{1,30}(?:e[-+]?[0-9]{1,3})?)\s*", re.IGNORECASE
+    r"\s*tao[-_ ]?([0-9]{1,3})[,;]?\s*omega\s*=?\s*(\.?[0-9]{1,30}|[0-9]{1,30}\.[0-9]{0,30})(e[-+]?[0-9]{1,3})?\s*",
+    re.IGNORECASE,
 )
 
 _AVERAGE = re.compile(
@@ -152,7 +153,7 @@ def method_named(name: str) -> Method:
     if (newton := _NEWTON.fullmatch(_folded(name))) is not None:
         return Gauss(int(newton[1]), iteration="newton")
     if (tao := _TAO.fullmatch(name)) is not None:
-        return ExtendedPhaseSpace(int(tao[1]), omega=float(tao[2]))
+        return ExtendedPhaseSpace(int(tao[1]), omega=float(tao[2] + (tao[3] or "")))
     if (average := _AVERAGE.fullmatch(name)) is not None:
         order, points, newton = average.groups()
         return AverageVectorField(

@@ -61,7 +61,7 @@ class Event:
     Raises
     ------
     TypeError
-        The function is no expression.
+        The function or a new value is no expression.
     ValueError
         The direction or the action is none of these.
 
@@ -90,6 +90,9 @@ class Event:
             raise ValueError(
                 f"action={self.action!r}: 'record', 'stop', 'bounce', or new values {{p: -p}} of the state"
             )
+        if isinstance(self.action, Mapping):
+            for variable, value in self.action.items():
+                given_expression(value, f"the new {variable} of the event {self}")
 
     def __str__(self) -> str:
         return self.name or f"{self.function} = 0"
@@ -167,9 +170,7 @@ def _prepared(system: HamiltonEquations, event: Event) -> PreparedEvent:
     rates = (*system.velocity, *system.force, graph.one)
     rate = graph.add([graph.mul([a, b]) for a, b in zip(slopes, rates, strict=True)])
     if event.action == "bounce":
-        return PreparedEvent(
-            event, value, rate, _reflected(system, event, slopes[: len(system.q)], value, rate)
-        )
+        return PreparedEvent(event, value, rate, _reflected(system, event, slopes, value, rate))
     if isinstance(event.action, str):
         return PreparedEvent(event, value, rate, None)
     given: dict[Any, Expr] = dict(event.action)
@@ -180,7 +181,10 @@ def _prepared(system: HamiltonEquations, event: Event) -> PreparedEvent:
             f"the event {event} changes {', '.join(strange)}: it can change coordinates and momenta"
         )
     jump = [
-        system.node(sp.sympify(given[s], strict=True), f"the new {s} of the event {event}")
+        system.node(
+            in_own_time(sp.sympify(given[s], strict=True), state, system.t),
+            f"the new {s} of the event {event}",
+        )
         if s in given
         else graph.symbol(s)
         for s in state
@@ -198,30 +202,33 @@ def _prepared(system: HamiltonEquations, event: Event) -> PreparedEvent:
 
 
 def _reflected(
-    system: HamiltonEquations, event: Event, normal: Sequence[int], value: int, rate: int
+    system: HamiltonEquations, event: Event, slopes: Sequence[int], value: int, rate: int
 ) -> tuple[int, ...]:
-    graph, p = system.graph, frozenset[Any](system.p)
+    # A parameter that differs from orbit to orbit is a coordinate that rests, and its momentum is nobody's.
+    graph, n = system.graph, len(system.q) - system.varying
+    p = frozenset[Any](system.p[:n])
     if not system.canonical:
         raise ValueError(
             f"the event {event} bounces, which Hamiltonians do: give the new velocities as its action, {{v: -v}}"
         )
-    if graph.symbols(value) & p or not frozenset[Any](system.q) & graph.symbols(value):
+    if graph.symbols(value) & p or not frozenset[Any](system.q[:n]) & graph.symbols(value):
         raise ValueError(
             f"the event {event} is no wall g(q, t) = 0 to bounce from: give its action as {{p: …}}"
         )
-    inverse_mass = [graph.gradient(velocity, system.p) for velocity in system.velocity]
-    twins = frozenset[Any](system.p[len(system.p) - system.varying :])
-    if any((graph.symbols(entry) & p) - twins for row in inverse_mass for entry in row):
+    inverse_mass = [graph.gradient(velocity, system.p[:n]) for velocity in system.velocity[:n]]
+    if any(graph.symbols(entry) & p for row in inverse_mass for entry in row):
         raise ValueError(
             f"H is not quadratic in the momenta, so it is not known how they bounce at {event}: give {{p: …}}"
         )
+    normal = slopes[:n]
     pushed = [
-        graph.add([graph.mul([entry, n]) for entry, n in zip(row, normal, strict=True)])
+        graph.add([graph.mul([entry, slope]) for entry, slope in zip(row, normal, strict=True)])
         for row in inverse_mass
     ]
-    across = graph.add([graph.mul([n, m]) for n, m in zip(normal, pushed, strict=True)])
+    across = graph.add([graph.mul([slope, m]) for slope, m in zip(normal, pushed, strict=True)])
     impulse = graph.scaled(-2, graph.mul([rate, graph.power(across, -1)]))
     momenta = [
-        graph.add([graph.symbol(s), graph.mul([impulse, n])]) for s, n in zip(system.p, normal, strict=True)
+        graph.add([graph.symbol(s), graph.mul([impulse, slope])])
+        for s, slope in zip(system.p[:n], normal, strict=True)
     ]
-    return (*(graph.symbol(s) for s in system.q), *momenta)
+    return (*(graph.symbol(s) for s in system.q), *momenta, *(graph.symbol(s) for s in system.p[n:]))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,6 +27,10 @@ class NonFiniteStateError(ArithmeticError):
         super().__init__(message)
         self.time = time
         self.state = state
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return what makes this error again, in another process too."""
+        return type(self), (str(self), self.time, self.state)
 
 
 class PiledUpError(NonFiniteStateError):

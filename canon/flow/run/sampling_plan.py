@@ -6,7 +6,7 @@ import itertools
 import math
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,7 +20,16 @@ if TYPE_CHECKING:
 
     from canon.array import Array
 
-__all__ = ["Plan", "Sampling", "adaptive_plan", "fictitious_plan", "fixed_plan", "sampling", "steps_over"]
+__all__ = [
+    "Plan",
+    "Sampling",
+    "adaptive_plan",
+    "fictitious_plan",
+    "fixed_plan",
+    "is_count",
+    "sampling",
+    "steps_over",
+]
 
 _LATEST, _MOST_STEPS = Fraction(10**300), 2**62
 """Times and steps that can still be told from the next ones."""
@@ -68,6 +77,19 @@ class Sampling:
         return sorted({0, steps, *nearest})
 
 
+def is_count(given: Any) -> bool:
+    """Return whether what was given is a whole number from 1 on, in whatever type, that steps can be counted by.
+
+    Examples
+    --------
+    >>> [is_count(given) for given in (1, 20.0, np.int64(3), 0, 2.5, math.nan, math.inf, "3")]
+    [True, True, True, False, False, False, False, False]
+    """
+    if isinstance(given, str) or np.ndim(given):
+        return False
+    return bool(1 <= given <= _MOST_STEPS and given == int(given))
+
+
 def sampling(t_span: tuple[Fraction, Fraction], samples: int | None, times: npt.ArrayLike | None) -> Sampling:
     """Return the instants of a run.
 
@@ -93,8 +115,8 @@ def sampling(t_span: tuple[Fraction, Fraction], samples: int | None, times: npt.
     start, end = t_span
     _check_length(start, end)
     if times is None:
-        if samples is not None and not (1 <= samples <= _MOST_STEPS and samples == int(samples)):
-            raise ValueError(f"samples={samples}: keep at least one state after the first, a whole number")
+        if samples is not None and not is_count(samples):
+            raise ValueError(f"samples={samples!r}: keep at least one state after the first, a whole number")
         return Sampling(start, end, 1000 if samples is None else int(samples))
     if samples is not None:
         raise ValueError(f"samples={samples} and times: give one of them")
@@ -110,12 +132,11 @@ def sampling(t_span: tuple[Fraction, Fraction], samples: int | None, times: npt.
             "times follow each other without repeating, in the direction of t_span: sort them, "
             "np.unique(times)" + ("" if forward > 0 else "[::-1]")
         )
-    outside = [
-        t for t in (given[0], given[-1]) if not min(start, end) <= Fraction(float(t)) <= max(start, end)
-    ]
+    # Times are doubles: the ends among them are those nearest to the span's own, such as a tenth.
+    inner = [t for t in given.tolist() if t not in (float(start), float(end))]
+    outside = [t for t in (*inner[:1], *inner[-1:]) if not min(start, end) <= Fraction(t) <= max(start, end)]
     if outside:
         raise ValueError(f"times hold {outside[0]:g}, outside t_span = ({float(start):g}, {float(end):g})")
-    inner = [float(t) for t in given if float(t) not in (float(start), float(end))]
     return Sampling(start, end, len(inner) + 1, tuple(inner))
 
 

@@ -23,6 +23,7 @@ import sympy as sp
 
 from canon.flow.run.event import PreparedEvent, prepared_events
 from canon.kernel.program.program import exact_value
+from canon.mechanics.algebra.dynamicsymbols import in_own_time
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -81,7 +82,7 @@ def extended(hamiltonian: HamiltonianSystem, method: TimeTransformed) -> Extende
     energy: Any = hamiltonian.H
     q, p = (*hamiltonian.q, t), (*hamiltonian.p, p_t)
     if method.g is not None:
-        g: Any = sp.sympify(method.g, strict=True)
+        g: Any = in_own_time(method.g, (*hamiltonian.q, *hamiltonian.p), t)
         return Extended(g * (energy + p_t), q, p, s, g)
     kinetic, potential = _split(hamiltonian)
     return Extended(sp.log(kinetic + p_t) - sp.log(-potential), q, p, s, -1 / potential)
@@ -93,7 +94,7 @@ def _split(hamiltonian: HamiltonianSystem) -> tuple[Any, Any]:
     if energy.is_polynomial(*hamiltonian.q, *hamiltonian.p):
         energy = sp.expand(energy)
     kinetic, potential = sp.S.Zero, sp.S.Zero
-    for term in sp.Add.make_args(energy):
+    for term in _terms(energy, hamiltonian):
         moves, rests = term.has(*hamiltonian.p), term.has(*hamiltonian.q, hamiltonian.t)
         if moves and rests:
             raise ValueError(
@@ -102,6 +103,15 @@ def _split(hamiltonian: HamiltonianSystem) -> tuple[Any, Any]:
             )
         kinetic, potential = (kinetic + term, potential) if moves else (kinetic, potential + term)
     return kinetic, potential
+
+
+def _terms(energy: Any, hamiltonian: HamiltonianSystem) -> list[Any]:
+    """Return the terms of a sum; those of a product such as (T + V)/m where it holds momenta beside coordinates."""
+    terms = list[Any]()
+    for term in sp.Add.make_args(energy):
+        mixed = term.has(*hamiltonian.p) and term.has(*hamiltonian.q, hamiltonian.t)
+        terms += sp.Add.make_args(sp.expand_mul(term)) if mixed else [term]
+    return terms
 
 
 @dataclass(frozen=True, eq=False)

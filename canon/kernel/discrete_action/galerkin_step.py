@@ -187,7 +187,9 @@ class _Galerkin:
         state = self._state(
             [w.load(self.y, i) for i in range(n)], [w.load(self.y, self.second + i) for i in range(n)]
         )
-        found = self._evaluated(self.lagrangian.momenta, state, w.load("%c", 0))
+        # A motion that goes on from a sample alone begins there, not at the first time.
+        now = w.multiply_add(w.whole("%first"), w.load("%c", 1), w.load("%c", 0))
+        found = self._evaluated(self.lagrangian.momenta, state, now)
         for i, value in enumerate(found):
             w.store(w.select(same, w.load(p, i), value), self.momenta, i)
             w.store(w.select(same, w.load(lost, i), w.constant(Fraction(0))), self.lost, i)

@@ -6,7 +6,7 @@ Entries stay as they are built; only pivots are asked whether they vanish, and t
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from sympy import Expr, Symbol
@@ -47,6 +47,10 @@ class SingularMatrixError(ValueError):
     def __init__(self, message: str, null_direction: tuple[Expr, ...]) -> None:
         super().__init__(message)
         self.null_direction = null_direction
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return what makes this error again, in another process too."""
+        return type(self), (str(self), self.null_direction)
 
 
 @dataclass(frozen=True)

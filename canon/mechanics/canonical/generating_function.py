@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import time as clock
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from sympy import Expr, Symbol
@@ -59,6 +59,10 @@ class NoGeneratingFunctionError(ValueError):
     def __init__(self, message: str, verdict: Verdict) -> None:
         super().__init__(message)
         self.verdict = verdict
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return what makes this error again, in another process too."""
+        return type(self), (str(self), self.verdict)
 
 
 @dataclass(frozen=True)
