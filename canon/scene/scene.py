@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -255,7 +256,8 @@ class Scene:
             if name not in known:
                 raise SceneError(f"{self.name} has no parameter {name!r}{near(name, known)}")
         changed = tuple(
-            replace(c, value=float(values[c.name])) if c.name in values else c for c in self.parameters
+            replace(c, value=_number(c.name, values[c.name])) if c.name in values else c
+            for c in self.parameters
         )
         moved = {c.name for c, now in zip(self.parameters, changed, strict=True) if c.value != now.value}
         unfit = {start.name for start in self.starts if moved & set(start.made_for.split())}
@@ -335,3 +337,10 @@ class Scene:
             at = {symbol: Float(float(x)) for symbol, x in zip(varying, orbit, strict=True)}
             by_orbit.append([*chosen.q, *(float(exchanged(p, at)) for p in momenta)])
         return np.array(by_orbit).T
+
+
+def _number(name: str, value: Any) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise SceneError(f"{name} = {reprlib.repr(value)}: give a finite number") from None

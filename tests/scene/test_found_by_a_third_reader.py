@@ -174,3 +174,95 @@ def test_the_scene_itself_is_one_of_a_study() -> None:
     assert Study.of(system=there_and_back, **rest).cases == by_name
     with pytest.raises(StudyError, match="as parameters, not inside the scene"):
         Study.of(system=top.with_parameters(m=0.11), **rest)
+
+
+# values that scenes take -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("value", [None, "abc", 10**400, math.nan])
+def test_what_is_no_number_is_refused_by_the_name_of_its_parameter(value: Any) -> None:
+    with pytest.raises(SceneError, match=r"mu = .* finite number"):
+        find("kepler").with_parameters(mu=value)
+
+
+@pytest.mark.parametrize(
+    ("name", "wrong", "right"),
+    [
+        ("crossed-fields", {"e": 0.0}, {"e": 1.6e-19}),
+        ("stormer", {"e": 0.0}, {"e": -1.6e-19}),
+        ("outer-solar-system", {"m0": 0.4}, {"m0": 0.9}),
+        ("outer-solar-system", {"G": 1e-4}, {"G": 3e-4}),
+        ("foucault-pendulum", {"latitude": -3.0}, {"latitude": -1.5}),
+        ("kovalevskaya-top", {"C": 0.8e-4}, {"C": 1e-4}),  # 2 m l² = 0.9e-4
+        ("kovalevskaya-top", {"m": 0.2, "l": 0.03}, {"m": 0.2, "l": 0.02}),
+        ("lagrange-top", {"A": 1.65e-4, "C": 3.2e-4}, {"A": 1.65e-4, "C": 0.09e-4}),  # A − m l² = 0.05e-4
+    ],
+)
+def test_what_no_body_or_orbit_has_is_refused(
+    name: str, wrong: dict[str, float], right: dict[str, float]
+) -> None:
+    with pytest.raises(SceneError, match="makes no sense"):
+        find(name).with_parameters(**wrong)
+    assert 0.0 < find(name).with_parameters(**right).period < math.inf
+
+
+def test_the_top_of_kovalevskaya_is_a_body() -> None:
+    value = find("kovalevskaya-top").values
+    off = value["m"] * value["l"] ** 2  # about the centre of mass, which lies on the first axis
+    A, B, C = 2.0 * value["C"], 2.0 * value["C"] - off, value["C"] - off
+    assert A < B + C
+
+
+@pytest.mark.parametrize(
+    ("name", "unknown", "known"),
+    [
+        ("driven-oscillator", {"k": 9.0, "c": 0.0}, {"k": 9.0, "c": 0.1}),  # m W² = 9
+        ("driven-oscillator", {"k": 9.0, "c": 0.0}, {"k": 9.1, "c": 0.0}),
+        ("block-in-pipe", {"c": 20.0}, {"c": 0.1}),
+        ("parametric-pendulum", {"a": 0.005}, {"a": 0.021}),
+        ("parametric-pendulum", {"a": 0.0}, {"a": 0.021}),
+    ],
+)
+def test_closed_forms_are_passed_over_where_they_are_none(
+    name: str, unknown: dict[str, float], known: dict[str, float]
+) -> None:
+    def forms(values: dict[str, float]) -> list[Any]:
+        scene = find(name).with_parameters(**values)
+        return [s.value(scene.values, np.ones(1)) for s in scene.solutions if s.condition.met(scene.values)]
+
+    assert forms(unknown) == []
+    assert np.isfinite(forms(known)).all()
+
+
+@pytest.mark.parametrize(
+    ("scene", "start", "changed"),
+    [
+        ("outer-solar-system", "1994", {"m1": 0.002}),
+        ("orbit-spherical", "ellipse", {"mu": 80.0}),
+        ("restricted-three-body", "tadpole", {"mu": 0.3}),
+        ("simple-pendulum", "rotating", {"l": 0.5}),
+    ],
+)
+def test_words_about_a_start_say_what_they_were_made_for(
+    scene: str, start: str, changed: dict[str, float]
+) -> None:
+    (name,) = changed
+    assert f"made for {name} = " in find(scene).with_parameters(**changed).start(start).about
+    assert "made for" not in find(scene).start(start).about
+
+
+def test_the_period_on_the_critical_wire_is_a_turn_of_it() -> None:
+    wire = find("bead-parabola")
+    critical = wire.with_parameters(w=math.sqrt(2.0 * wire.values["g"]))
+    assert critical.period == pytest.approx(2.0 * math.pi / critical.values["w"])
+    assert wire.period == pytest.approx(2.0 * math.pi / math.sqrt(2.0 * wire.values["g"] - 9.0))
+
+
+def test_the_energy_of_the_sleigh_is_its_energy() -> None:
+    sleigh = find("chaplygin-sleigh")
+    (energy,) = sleigh.constants().values()
+    at = {**sleigh.values_by_symbol(), sleigh.symbols.theta: 0.3}
+    speed = {sleigh.symbols.x.dot: math.cos(0.3), sleigh.symbols.y.dot: math.sin(0.3)}
+    slow = {sleigh.symbols.theta.dot: 0.0}
+    straight = energy.xreplace({key: Float(value) for key, value in {**at, **speed, **slow}.items()})
+    assert float(straight) == pytest.approx(sleigh.values["m"] / 2.0)
