@@ -296,7 +296,7 @@ class Scene:
         Raises
         ------
         SceneError
-            Where there is no such start.
+            Where there is no such start, or it has another number of coordinates.
         ValueError
             Where arrays differ in length.
 
@@ -309,6 +309,11 @@ class Scene:
         import numpy as np
 
         chosen = start if isinstance(start, Start) else self.start(start)
+        if len(chosen.q) != len(self.q):
+            raise SceneError(
+                f"the start {chosen.name!r} is at {chosen.q}: {self.name} needs one number for each of "
+                f"{self.coordinates}"
+            )
         if chosen.p is not None:
             return np.array([*chosen.q, *chosen.p])
         from sympy import Float

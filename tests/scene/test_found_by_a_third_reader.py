@@ -15,6 +15,9 @@ from sympy import Float
 from canon import propagate
 from canon.flow import prepare
 from canon.scene import SCENES, SceneError, find
+from canon.scene.known_truths import check
+from canon.scene.parts import Start
+from canon.scene.scene_motion import first_zero, run
 from canon.study.cases.study import Study
 from canon.study.errors import StudyError
 from canon.study.kept.keep_choice import chosen_functions
@@ -266,3 +269,38 @@ def test_the_energy_of_the_sleigh_is_its_energy() -> None:
     slow = {sleigh.symbols.theta.dot: 0.0}
     straight = energy.xreplace({key: Float(value) for key, value in {**at, **speed, **slow}.items()})
     assert float(straight) == pytest.approx(sleigh.values["m"] / 2.0)
+
+
+# runs -------------------------------------------------------------------------------------------------
+
+
+def test_runs_of_no_length_and_without_states_are_refused() -> None:
+    scene = find("harmonic-oscillator")
+    for periods in (math.inf, 0.0, -1.0, math.nan):
+        with pytest.raises(SceneError, match="positive, finite"):
+            run(scene, periods=periods)
+        with pytest.raises(SceneError, match="positive, finite"):
+            first_zero(scene, None, scene.q[0], periods)
+    for samples in (0, -3):
+        with pytest.raises(SceneError, match="one state after the first"):
+            run(scene, periods=1, samples=samples)
+    with pytest.raises(SceneError, match="positive, finite"):
+        check(scene, periods=0)
+    assert run(scene, periods=1, samples=1).t.shape == (2,)
+    assert all(each.passed for each in check(scene, periods=0.5))
+
+
+@pytest.mark.parametrize("given", [{"p": (2.0,)}, {"v": (2.0,)}])
+def test_a_start_with_another_number_of_coordinates_is_refused(given: dict[str, Any]) -> None:
+    with pytest.raises(SceneError, match="one number for each of x y"):
+        find("kepler").state(Start("short", "", q=(1.0,), **given))
+    assert find("kepler").state(Start("whole", "", q=(1.0, 0.0), p=(0.0, 1.0))).shape == (4,)
+
+
+@pytest.mark.parametrize("part", [1.0, 2.0**-60])
+def test_constraints_are_held_in_slow_units_too(part: float) -> None:
+    """With g so small the period is 2e9 s, and 12/period is no multiple of a millionth."""
+    scene = find("pendulum-multiplier")
+    motion = run(scene.with_parameters(g=part * scene.values["g"]), periods=300.0, samples=50)
+    length = motion.values(motion.equation.residuals)[0]
+    assert np.abs(length).max() < 1e-14
