@@ -243,7 +243,6 @@ def test_closed_forms_are_passed_over_where_they_are_none(
         ("outer-solar-system", "1994", {"m1": 0.002}),
         ("orbit-spherical", "ellipse", {"mu": 80.0}),
         ("restricted-three-body", "tadpole", {"mu": 0.3}),
-        ("simple-pendulum", "rotating", {"l": 0.5}),
     ],
 )
 def test_words_about_a_start_say_what_they_were_made_for(

@@ -72,7 +72,7 @@ SIMPLE = Scene(
     starts=(
         Start("wide", "released at rest at 2 rad", q=(2.0,), v=(0.0,)),
         Start("small", "released at rest at 0.1 rad", q=(0.1,), v=(0.0,)),
-        Start("rotating", "going over the top", q=(0.0,), v=(7.0,), made_for="l g"),
+        Start("rotating", "going over the top", q=(0.0,), v=(7.0,)),
     ),
     time_scale=_small_swing,
     time_unit="s",
