@@ -108,7 +108,7 @@ def task_from(course: HamiltonianCourse, request: Request, y0: Any) -> Task:
     """
     refuse_swapped(request.t_span, y0)
     if is_named(y0) and is_scene(request.system):
-        y0 = opened(request.system, y0, {}).y0
+        y0 = opened(request.system, y0, request.parameters or {}).y0
     return course.task(y0)
 
 

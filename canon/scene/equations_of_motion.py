@@ -159,7 +159,8 @@ def _constraints(
     graph, add, mul = found.graph, found.graph.add, found.graph.mul
     bound = scene.constrained
     system = constrained(found, bound.holonomic, bound.nonholonomic)
-    pull = graph.number(Fraction(_PULL / scene.period).limit_denominator(10**6))
+    fast = Fraction(_PULL / scene.period)
+    pull = graph.number(fast.limit_denominator(max(10**6, round(1000 / fast))))  # to 1e-3, however slow
     speeds = [graph.symbol(w) for w in found.velocities]
     rates = [add((_dot(graph, row, speeds), a0)) for row, a0 in zip(system.A, system.rests, strict=True)]
     right, lower = list(found.f), [list(row) for row in found.M]

@@ -121,6 +121,11 @@ def check(scene: Scene, start: str | None = None, periods: float | None = None) 
     periods
         Duration of the runs along which integrals are measured; 100, or up to the scene's horizon.
 
+    Raises
+    ------
+    SceneError
+        There is no such start, or no such number of periods.
+
     Examples
     --------
     >>> from canon.scene import find
@@ -130,7 +135,7 @@ def check(scene: Scene, start: str | None = None, periods: float | None = None) 
     names = [start] if start is not None else [each.name for each in scene.starts]
     found: list[Check] = []
     for name in names:
-        found += integrals_along(run(scene, name, min(periods or 100.0, scene.horizon)))
+        found += integrals_along(run(scene, name, min(100.0 if periods is None else periods, scene.horizon)))
     return (*found, *solutions_met(scene, start))
 
 

@@ -34,8 +34,8 @@ class Parameter:
         As one would write them under a figure; ``unit`` is empty for a pure number.
     sign
         ``positive``, ``nonnegative`` or ``real``: what it may be.
-    most
-        The largest value that makes sense.
+    least, most
+        The smallest and the largest value that make sense.
     """
 
     name: str
@@ -44,6 +44,7 @@ class Parameter:
     meaning: str
     sign: str = "positive"
     most: float = math.inf
+    least: float = -math.inf
 
     def __post_init__(self) -> None:
         if not math.isfinite(self.value):
@@ -52,6 +53,10 @@ class Parameter:
         if wrong:
             raise SceneError(
                 f"{self.name} = {self.value:g} makes no sense: {self.meaning} must be {self.sign}"
+            )
+        if self.value < self.least:
+            raise SceneError(
+                f"{self.name} = {self.value:g} makes no sense: {self.meaning} is at least {self.least:g}"
             )
         if self.value > self.most:
             raise SceneError(

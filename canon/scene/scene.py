@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import reprlib
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from canon.cached_property import cached_property
 from canon.scene.parts import Condition, Integral, Parameter, SceneError, Solution, Start, near
@@ -239,7 +240,7 @@ class Scene:
         """Return the known constants of the motion beside the energy, as functions of q and p (or q̇) and t."""
         return {integral.name: integral.build(self.symbols) for integral in self.integrals}
 
-    def with_parameters(self, **values: float) -> Scene:
+    def with_parameters(self, /, **values: float) -> Scene:
         """Return the scene with other values of some parameters, without the motions that are not known then.
 
         Starts stay the numbers that they are; what was said of those made for other values says so, as that p at a
@@ -255,7 +256,8 @@ class Scene:
             if name not in known:
                 raise SceneError(f"{self.name} has no parameter {name!r}{near(name, known)}")
         changed = tuple(
-            replace(c, value=float(values[c.name])) if c.name in values else c for c in self.parameters
+            replace(c, value=_number(c.name, values[c.name])) if c.name in values else c
+            for c in self.parameters
         )
         moved = {c.name for c, now in zip(self.parameters, changed, strict=True) if c.value != now.value}
         unfit = {start.name for start in self.starts if moved & set(start.made_for.split())}
@@ -278,11 +280,40 @@ class Scene:
                 return start
         raise SceneError(f"{self.name} has no start {name!r}{near(name, [s.name for s in self.starts])}")
 
-    def state(self, start: str | Start | None = None) -> NDArray[np.float64]:
-        """Return an initial state (q, p), shape (2n,); velocities become momenta by p = ∂L/∂q̇."""
+    def state(
+        self, start: str | Start | None = None, values: Mapping[str, Any] | None = None
+    ) -> NDArray[np.float64]:
+        """Return an initial state (q, p), shape (2n,); velocities become momenta by p = ∂L/∂q̇.
+
+        Parameters
+        ----------
+        start
+            A start, the name of one, or None for the first.
+        values
+            Values of parameters by name in place of the scene's own, as the momenta depend on them: numbers, or arrays
+            of shape (orbits,). Where momenta differ from orbit to orbit, the state has the shape (2n, orbits).
+
+        Raises
+        ------
+        SceneError
+            Where there is no such start, or it has another number of coordinates.
+        ValueError
+            Where arrays differ in length.
+
+        Examples
+        --------
+        >>> from canon.scene import find
+        >>> find("simple-pendulum").state("rotating", {"m": 3.0}).tolist()
+        [0.0, 21.0]
+        """
         import numpy as np
 
         chosen = start if isinstance(start, Start) else self.start(start)
+        if len(chosen.q) != len(self.q):
+            raise SceneError(
+                f"the start {chosen.name!r} is at {chosen.q}: {self.name} needs one number for each of "
+                f"{self.coordinates}"
+            )
         if chosen.p is not None:
             return np.array([*chosen.q, *chosen.p])
         from sympy import Float
@@ -291,11 +322,30 @@ class Scene:
         from canon.mechanics.algebra.substitution import exchanged
 
         lagrangian = self.lagrangian
+        given = {getattr(self.symbols, name): x for name, x in {**self.values, **(values or {})}.items()}
+        varying = {symbol: np.asarray(x) for symbol, x in given.items() if np.ndim(x)}
         known = {
-            **self.values_by_symbol(),
+            **{symbol: x for symbol, x in given.items() if symbol not in varying},
             **dict(zip(self.q, chosen.q, strict=True)),
             **dict(zip(lagrangian.velocities, chosen.v or (), strict=True)),
             time: 0.0,
         }
-        at = {symbol: Float(value) for symbol, value in known.items()}
-        return np.array([*chosen.q, *(float(exchanged(p, at)) for p in lagrangian.momenta)])
+        at = {symbol: Float(float(x)) for symbol, x in known.items()}
+        momenta = [exchanged(p, at) for p in lagrangian.momenta]
+        if not any(p.free_symbols for p in momenta):
+            return np.array([*chosen.q, *map(float, momenta)])
+        if len({x.shape for x in varying.values()}) > 1 or any(x.ndim != 1 for x in varying.values()):
+            shapes = ", ".join(f"{symbol} of shape {x.shape}" for symbol, x in varying.items())
+            raise ValueError(f"{shapes}: parameters by orbit have shape (orbits,)")
+        by_orbit: list[list[float]] = []
+        for orbit in zip(*varying.values(), strict=True):
+            at = {symbol: Float(float(x)) for symbol, x in zip(varying, orbit, strict=True)}
+            by_orbit.append([*chosen.q, *(float(exchanged(p, at)) for p in momenta)])
+        return np.array(by_orbit).T
+
+
+def _number(name: str, value: Any) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise SceneError(f"{name} = {reprlib.repr(value)}: give a finite number") from None

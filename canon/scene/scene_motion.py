@@ -94,6 +94,8 @@ def run(
     ------
     NonFiniteStateError
         The motion can't be continued over the whole span.
+    SceneError
+        There is no such start, or no such number of periods or samples.
 
     Examples
     --------
@@ -102,8 +104,10 @@ def run(
     >>> motion.q.round(3) + 0.0
     array([[ 0.1,  0. , -0.1,  0. ,  0.1]])
     """
-    if not periods > 0.0:
+    if not 0.0 < periods < np.inf:
         raise SceneError(f"periods={periods}: give a positive, finite number")
+    if samples < 1:
+        raise SceneError(f"samples={samples}: keep one state after the first at least")
     chosen = start if isinstance(start, Start) else scene.start(start)
     equation = scene_equations(scene)
     times = np.linspace(0.0, periods * scene.period, samples + 1)
@@ -120,6 +124,8 @@ def first_zero(scene: Scene, start: str | None, f: Expr, periods: float) -> Scen
     ------
     NonFiniteStateError
         f does not vanish within these periods, or the motion ends before.
+    SceneError
+        There is no such start, or no such number of periods.
 
     Examples
     --------
@@ -131,6 +137,8 @@ def first_zero(scene: Scene, start: str | None, f: Expr, periods: float) -> Scen
     >>> float((4 * quarter / scene.period - 1).round(6))
     0.000625
     """
+    if not 0.0 < periods < np.inf:
+        raise SceneError(f"periods={periods}: give a positive, finite number")
     chosen, equation = scene.start(start), scene_equations(scene)
     y0 = start_state(scene, chosen, equation)
     node, until = equation.node(f, "the event"), periods * scene.period

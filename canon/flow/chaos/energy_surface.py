@@ -104,7 +104,7 @@ def starts_of_energy(
 
 def _equations(system: Any, parameters: dict[Any, Any]) -> HamiltonEquations:
     if is_scene(system):
-        system, _, parameters = opened(system, None, parameters)
+        system, _, parameters = opened(system, (), parameters)
     if not is_hamiltonian(system):
         raise TypeError(
             f"{system!r:.60} is no Hamiltonian: give one, such as canon.hamiltonian(L), or a scene that has one"

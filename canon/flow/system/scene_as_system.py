@@ -76,8 +76,8 @@ class SceneLike(Protocol):
         """The start of that name, or the default one."""
         ...
 
-    def state(self, start: str | None = None) -> Array:
-        """The start (q, p) of that name."""
+    def state(self, start: str | None = None, values: Mapping[str, Any] | None = None) -> Array:
+        """The start (q, p) of that name, with values in place of its parameters' own."""
         ...
 
 
@@ -123,6 +123,11 @@ def opened(system: str | SceneLike, y0: Any, parameters: Mapping[Symbol | str, A
     >>> found = opened("simple-pendulum", "small", {"l": 2.0})
     >>> found.system.p, found.y0, found.parameters["l"]
     ((p_theta,), array([0.1, 0. ]), 2.0)
+
+    Of a start by velocities the momenta are those at these values, here m l² times 7 rad/s:
+
+    >>> opened("simple-pendulum", "rotating", {"l": 2.0}).y0
+    array([ 0., 28.])
     """
     scene = scene_of(system)
     own = {s.name: value for s, value in scene.values_by_symbol().items()}
@@ -133,7 +138,9 @@ def opened(system: str | SceneLike, y0: Any, parameters: Mapping[Symbol | str, A
             raise KeyError(f"{scene.name} has no parameter {name}; it has {', '.join(own) or 'none'}")
         values[name] = value
     if scene.is_free:
-        return Opened(scene.hamiltonian, _state(scene, y0) if is_named(y0) else y0, values)
+        # p = ∂L/∂q̇ of a start given by velocities is the one at the values that the motion has
+        start = scene.state(y0, {str(name): x for name, x in values.items()}) if is_named(y0) else y0
+        return Opened(scene.hamiltonian, start, values)
     moving = scene.constrained if scene.is_constrained else scene.lagrangian
     return Opened(moving, _placed(scene, y0, values) if is_named(y0) else y0, values)
 
@@ -152,10 +159,6 @@ def _by_name(name: str) -> SceneLike:
 def is_named(y0: Any) -> bool:
     """Tell whether a start is given as one of a scene's: by its name, or None for the first."""
     return y0 is None or isinstance(y0, str)
-
-
-def _state(scene: SceneLike, name: str | None) -> Array:
-    return scene.state(name)
 
 
 def _placed(scene: SceneLike, name: str | None, values: Mapping[Symbol | str, Any]) -> list[float]:

@@ -45,7 +45,10 @@ def _parabola_picture(s: SimpleNamespace) -> Picture:
 
 
 def _small_slide(value: Mapping[str, float]) -> float:
-    return 2.0 * math.pi / math.sqrt(abs(2.0 * value["g"] * value["c"] - value["w"] ** 2) or 1.0)
+    square = value["w"] ** 2
+    gap = abs(2.0 * value["g"] * value["c"] - square)
+    # where w² = 2 g c, up to rounding, nothing swings: the turns of the wire are what there is
+    return 2.0 * math.pi / math.sqrt(gap if gap > 1e-12 * square else square)
 
 
 PARABOLA = Scene(

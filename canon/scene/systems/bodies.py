@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from canon.scene.formula_functions import Add, Integer, sqrt
+from canon.scene.parts import Condition
 from canon.scene.picture import Picture
 from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
 
@@ -159,10 +160,15 @@ def _planets_hamiltonian(s: SimpleNamespace) -> Expr:
 
 def _orbit_of_jupiter(value: Mapping[str, float]) -> float:
     """Return the period of the ellipse that Jupiter's place and velocity at the start belong to."""
+    mu = value["G"] * (value["m0"] + value["m1"])
+    return 2.0 * math.pi * math.sqrt((-mu / (2.0 * _energy_of_jupiter(value))) ** 3 / mu)
+
+
+def _energy_of_jupiter(value: Mapping[str, float]) -> float:
+    """Return the energy of Jupiter about the Sun, for its reduced mass: below 0 on an ellipse."""
     _, _, place, velocity = _PLANETS[1]
     mu = value["G"] * (value["m0"] + value["m1"])
-    energy = math.hypot(*velocity) ** 2 / 2.0 - mu / math.hypot(*place)
-    return 2.0 * math.pi * math.sqrt((-mu / (2.0 * energy)) ** 3 / mu)
+    return math.hypot(*velocity) ** 2 / 2.0 - mu / math.hypot(*place)
 
 
 def _planets_start() -> Start:
@@ -178,6 +184,7 @@ def _planets_start() -> Start:
         "5 September 1994, 0h; the centre of mass rests",
         q=tuple(x - c for _, _, place, _ in _PLANETS for x, c in zip(place, centre, strict=True)),
         p=tuple(m * (v - d) for _, m, _, velocity in _PLANETS for v, d in zip(velocity, drift, strict=True)),
+        made_for=" ".join(("G", *(f"m{body}" for body in range(len(_PLANETS))))),
     )
 
 
@@ -199,6 +206,12 @@ OUTER_SOLAR_SYSTEM = Scene(
         ),
     ),
     starts=(_planets_start(),),
+    conditions=(
+        Condition(
+            "the Sun holds Jupiter, at its place and velocity of 1994, where G (m0 + m1) > r v²/2",
+            lambda v: _energy_of_jupiter(v) < 0.0,
+        ),
+    ),
     time_scale=_orbit_of_jupiter,
     shown=21.0,
     picture_of=lambda s: Picture(masses=tuple(_planet_places(s))),

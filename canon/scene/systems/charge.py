@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["MATHIEU_LIMIT", "SCENES", "in_fields", "mathieu_exponent"]
 
 _CHARGE = Parameter("e", 1.602176634e-19, "C", "charge", sign="real")
+_CHARGED = Condition("without a charge it does not gyrate, so that e ≠ 0", lambda v: v["e"] != 0.0)
 _ELECTRON = Parameter("m", 9.1093837e-31, "kg", "mass of the electron")
 
 
@@ -89,6 +90,7 @@ CROSSED = Scene(
         Start("rest", "let go at rest", q=(0.0, 0.0, 0.0), v=(0.0, 0.0, 0.0)),
         Start("helix", "shot along the field and across it", q=(0.0, 0.0, 0.0), v=(1e6, 0.0, 2e5)),
     ),
+    conditions=(_CHARGED,),
     time_scale=_gyration,
     time_unit="s",
     source="Jackson, Classical Electrodynamics (3rd ed.), § 12.3",
@@ -97,7 +99,7 @@ CROSSED = Scene(
         Integral("canonical momentum p_y", lambda s: s.y.momentum),
         Integral("momentum p_z", lambda s: s.z.momentum),
         Integral(
-            "guiding centre, p_x − e B y + e E B t/B",
+            "guiding centre, p_x − e B y − e E t",
             lambda s: s.x.momentum - s.e * s.B * s.y - s.e * s.E * s.t,
             1e-11,
             "it is the small difference of terms that grow with time",
@@ -170,6 +172,7 @@ STORMER = Scene(
             v=(_SPEED, 0.0, 0.0),
         ),
     ),
+    conditions=(_CHARGED,),
     time_scale=_gyration_at_start,
     time_unit="s",
     source="Störmer, The Polar Aurora (Oxford, 1955); Dragt, Rev. Geophys. 3, 255 (1965), doi:10.1029/RG003i002p00255; "

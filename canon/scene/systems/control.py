@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from canon.scene.formula_functions import Integer, cos, sin
+from canon.scene.parts import Condition
 from canon.scene.picture import Picture, wheel
 from canon.scene.scene import Integral, Parameter, Scene, Solution, Start
 from canon.scene.systems.pendulum import GRAVITY, below
@@ -135,6 +136,10 @@ BLOCK = Scene(
             lambda s: s.y,
             lambda v, t: _bounce(v, t),
             periods=5.0,
+            condition=Condition(
+                "the damping is below the critical one, 2 √(k m)",
+                lambda v: v["c"] ** 2 < 4.0 * v["k"] * v["m"],
+            ),
         ),
     ),
     picture_of=_block_picture,

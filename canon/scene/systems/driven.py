@@ -67,7 +67,17 @@ OSCILLATOR = Scene(
     L_of=lambda s: s.m * s.x.dot**2 / 2 - s.k * s.x**2 / 2,
     forces_of=_driven_forces,
     solutions=(
-        Solution("place: steady swing and transient", "at rest", lambda s: s.x, _damped_motion, periods=50.0),
+        Solution(
+            "place: steady swing and transient",
+            "at rest",
+            lambda s: s.x,
+            _damped_motion,
+            periods=50.0,
+            condition=Condition(
+                "where c = 0 it is off resonance, k ≠ m W²",
+                lambda v: v["c"] > 0.0 or v["k"] != v["m"] * v["W"] * v["W"],
+            ),
+        ),
     ),
     picture_of=on_a_table,
 )
@@ -187,6 +197,10 @@ PARAMETRIC = Scene(
             bound=0.1,
             periods=60.0,
             source="an average, good to the ratio of the frequencies",
+            condition=Condition(
+                "upside down is stable, a² W² > 2 g l",
+                lambda v: (v["a"] * v["W"]) ** 2 > 2.0 * v["g"] * v["l"],
+            ),
         ),
     ),
 )

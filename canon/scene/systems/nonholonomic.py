@@ -95,7 +95,7 @@ SLEIGH = Scene(
     integrals=(
         Integral(
             "energy m (u² + k² ω²)/2",
-            lambda s: s.m * _forwards(s) ** 2 + (s.I + s.m * s.a**2) * s.theta.dot**2,
+            lambda s: (s.m * _forwards(s) ** 2 + (s.I + s.m * s.a**2) * s.theta.dot**2) / 2,
         ),
     ),
     solutions=(

@@ -234,6 +234,7 @@ SPHERICAL = Scene(
             "perihelion of an ellipse with e = 0.6, tilted by 0.4 rad",
             q=(_NEAR, math.pi / 2.0, 0.0),
             v=(0.0, -_FAST / _NEAR * math.sin(_TILT), _FAST / _NEAR * math.cos(_TILT)),
+            made_for="mu",
         ),
     ),
     time_scale=_year,

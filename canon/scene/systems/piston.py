@@ -84,7 +84,7 @@ ENGINE = Scene(
 
 
 def _harmonics(s: SimpleNamespace) -> tuple[Expr, Expr]:
-    """Return A and B of I(θ) ≈ A − B cos 2θ, to first order in r/l, at e = 0."""
+    """Return A and B of I(θ) ≈ A − B cos 2θ, to the lowest order in r/l, at e = 0."""
     length = s.a + s.b
     sliding = (s.m3 + s.m2 * s.a / length) * s.r**2
     turning = (s.J2 - s.m2 * s.a * s.b) * (s.r / length) ** 2
@@ -123,7 +123,7 @@ TRUNCATED = Scene(
     starts=(Start("running", "100 rad/s at the top, nothing drives it", q=(0.0,), v=(SPEED,)),),
     time_scale=turn,
     time_unit="s",
-    source="first order in r/l and no offset",
+    source="lowest order in r/l and no offset",
     L_of=_first_order,
     forces_of=lambda s: [-s.M],
     picture_of=_truncated_picture,
@@ -163,7 +163,7 @@ DRIVEN = Scene(
     starts=(Start("running", "at the top", q=(0.0,), v=(SPEED,)),),
     time_scale=lambda value: 2.0 * math.pi / value["w"],
     time_unit="s",
-    source="first order in r/l and no offset; I(θ) ≈ A − B cos 2θ",
+    source="lowest order in r/l and no offset; I(θ) ≈ A − B cos 2θ",
     L_of=_first_order,
     holonomic_of=lambda s: [s.theta - s.w * s.t],
     solutions=(

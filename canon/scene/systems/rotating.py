@@ -54,7 +54,15 @@ FOUCAULT = Scene(
         Parameter("m", 28.0, "kg", "mass of the bob"),
         Parameter("l", 67.0, "m", "length"),
         Parameter("w", 7.2921159e-5, "rad/s", "angular velocity of the Earth"),
-        Parameter("latitude", math.radians(48.8462), "rad", "latitude", sign="real", most=math.pi / 2.0),
+        Parameter(
+            "latitude",
+            math.radians(48.8462),
+            "rad",
+            "latitude",
+            sign="real",
+            least=-math.pi / 2.0,
+            most=math.pi / 2.0,
+        ),
         GRAVITY,
     ),
     starts=(
@@ -129,6 +137,7 @@ RESTRICTED = Scene(
             "near the Lagrangian point L4, at rest in the turning frame",
             q=(0.5 - ARENSTORF_MU + 0.01, math.sqrt(0.75)),
             p=(-math.sqrt(0.75), 0.5 - ARENSTORF_MU + 0.01),
+            made_for="mu",
         ),
         Start(
             "L4",

@@ -114,10 +114,13 @@ LAGRANGE = Scene(
         GRAVITY,
     ),
     conditions=(
-        Condition("C is at most 2 A, as no body is flatter than a disc", lambda v: v["C"] <= 2.0 * v["A"]),
         Condition(
             "A holds m l² at least, as it is taken about the fixed point",
             lambda v: v["A"] >= v["m"] * v["l"] ** 2,
+        ),
+        Condition(
+            "C is at most 2 (A − m l²), as no body is flatter than a disc",
+            lambda v: v["C"] <= 2.0 * (v["A"] - v["m"] * v["l"] ** 2),
         ),
     ),
     starts=(
@@ -206,15 +209,15 @@ KOVALEVSKAYA = Scene(
     coordinates="theta phi psi",
     angles="phi psi",
     parameters=(
-        Parameter("m", 0.2, "kg", "mass"),
-        Parameter("l", 0.03, "m", "distance of the centre of mass from the fixed point"),
+        Parameter("m", 0.8, "kg", "mass"),
+        Parameter("l", 0.0075, "m", "distance of the centre of mass from the fixed point"),
         Parameter("C", 2.0e-4, "kg m²", "moment of inertia about the axis, half of those across it"),
         GRAVITY,
     ),
     conditions=(
         Condition(
-            "C holds m l² at least: the centre of mass is off the axis",
-            lambda v: v["C"] >= v["m"] * v["l"] ** 2,
+            "C holds 2 m l² at least: B + C − A = C is 2 ∫x² dm along the axis through the centre of mass",
+            lambda v: v["C"] >= 2.0 * v["m"] * v["l"] ** 2,
         ),
     ),
     starts=(

@@ -32,8 +32,7 @@ def _quarter(value: Mapping[str, float]) -> float:
 TWO_WAVES = Scene(
     name="two-waves",
     title="A particle in two waves: between their resonances at p = 0 and 1, of half-widths 2√M and 2√P, chaos begins",
-    coordinates="x",
-    angles="x",
+    coordinates="x",  # no angle: a whole turn of x changes cos(k (x − t)), but for whole k
     parameters=(
         Parameter("M", 0.02, "", "amplitude of the wave at rest"),
         Parameter("P", _SECOND, "", "amplitude of the wave of speed 1", sign="nonnegative"),

@@ -216,12 +216,7 @@ def _system(
     if isinstance(given, str):
         return own[given] if given in own else find(given).name
     if isinstance(given, Scene):
-        changed = {k: v for k, v in given.values.items() if v != find(given.name).values[k]}
-        if changed:
-            raise ValueError(
-                f"give changed values of {given.name} as parameters, not inside the scene: {changed}"
-            )
-        return given.name
+        return _known_scene(given)
     used = {str(symbol) for symbol in _symbols(given)}
     first = {name: _number(name, _listed(value)[0]) for name, value in parameters.items() if name in used}
     if is_hamiltonian(given):
@@ -231,6 +226,37 @@ def _system(
             f"the system holds {', '.join(missing)}: give each a value, parameters={{name: value}}"
         )
     return system_text(given, parameters=first)
+
+
+def _known_scene(given: Scene) -> str:
+    """Return the name of a scene, by which alone a file holds it: it must move as the one that the name finds."""
+    stock = find(given.name)
+    changed = {k: v for k, v in given.values.items() if v != stock.values.get(k)}
+    own = [name for name in _OF_THE_MOTION if getattr(given, name) != getattr(stock, name)]
+    own += ["starts"] if _places(given) != _places(stock) else []
+    if own:
+        form = "hamiltonian" if given.is_free else "constrained" if given.is_constrained else "lagrangian"
+        raise ValueError(
+            f"this scene is not the {given.name} that its name finds: {', '.join(own)} differ. A study holds scenes by "
+            f"name: give system=scene.{form}, with start= and parameters="
+        )
+    if changed:
+        raise ValueError(
+            f"give changed values of {given.name} as parameters, not inside the scene: {changed}"
+        )
+    return given.name
+
+
+_OF_THE_MOTION = (
+    "coordinates", "time_scale", "L_of", "H_of", "bodies_of", "V_of", "forces_of", "holonomic_of", "nonholonomic_of",
+    "integrals",
+)  # fmt: skip
+"""What a study takes from a scene, beside its starts and the values of its parameters."""
+
+
+def _places(scene: Scene) -> list[Any]:
+    """Return the starts by name, without the words about them, which other values change."""
+    return [(start.name, start.q, start.v, start.p) for start in scene.starts]
 
 
 def _told_apart(systems: Sequence[str | Formula | SystemText]) -> list[str | Formula | SystemText]:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import reprlib
-from types import CodeType, FunctionType
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from types import CodeType, FunctionType, MethodType
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
     Function = Callable[..., Any]
 
@@ -74,12 +77,15 @@ def chosen_functions(functions: Mapping[str, Function]) -> Choice:
     """Return the names of functions whose results are kept, each with a digest of its code.
 
     The digest makes a changed function's results others: a case is run anew. It is over the function's own
-    instructions, names and constants; what it calls or encloses is not looked at.
+    instructions, names and constants, and over the values of its defaults and those it encloses: numbers, texts,
+    arrays, and tuples, lists, sets and dicts of them. What it calls, and enclosed values of other kinds, are not looked
+    at.
 
     Raises
     ------
     TypeError, ValueError
-        One of them is no function, or its name is no name.
+        One of them is no function, its name is no name, or a default is of another kind, so that nobody could tell
+        later which one the results are of.
 
     Examples
     --------
@@ -99,15 +105,58 @@ def chosen_functions(functions: Mapping[str, Function]) -> Choice:
             raise ValueError(
                 f"what is kept can't be called {name!r}: give letters and digits, and none of canon's names"
             )
-        found.append((name, f"function {_digest(function.__code__, _plain(function))}"))
+        defaults = _defaults(name, function)
+        found.append((name, f"function {_digest(function.__code__, f'{defaults}{_enclosed(function)}')}"))
     return tuple(found)
 
 
-def _plain(function: FunctionType) -> str:
-    """Return the defaults of a function that are numbers or texts."""
+def _defaults(name: str, function: FunctionType) -> str:
+    """Return the defaults of a function as text."""
     named = (function.__kwdefaults__ or {}).items()
-    given = (*enumerate(function.__defaults__ or ()), *sorted(named))
-    return repr([each for each in given if isinstance(each[1], int | float | str | None)])
+    texts: list[str] = []
+    for key, value in (*enumerate(function.__defaults__ or ()), *sorted(named)):
+        text = _said(value)
+        if text is None:
+            raise TypeError(
+                f"keep = {{{name!r}: …}}: the default {reprlib.repr(value)} can't be told from another one later; let "
+                "defaults be numbers, texts, arrays or functions, or lists of them"
+            )
+        texts.append(f"({key!r}, {text})")
+    return f"[{', '.join(texts)}]"
+
+
+def _enclosed(function: FunctionType) -> str:
+    """Return the values that a function encloses as text: those that can be told apart, but no functions it calls."""
+    texts: list[str] = []
+    for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
+        try:
+            value = cell.cell_contents
+        except ValueError:  # a name that has no value yet
+            continue
+        text = None if callable(value) else _said(value)
+        if text is not None:
+            texts.append(f"{name} = {text}")
+    return "; ".join(texts)
+
+
+def _said(value: Any) -> str | None:
+    """Return a value as text that is the same in every process, and another one's for another value, or None."""
+    if value is None or isinstance(value, int | float | complex | str | bytes | np.generic):
+        return repr(value)
+    if isinstance(value, np.ndarray):
+        return None if value.dtype.hasobject else f"{value.dtype} {value.shape} {value.tolist()!r}"
+    if isinstance(value, FunctionType):
+        return f"function {_digest(value.__code__)}"
+    if callable(value):
+        return None if isinstance(value, MethodType) else getattr(value, "__name__", None)
+    if isinstance(value, Mapping):
+        items = _said(list(cast("Mapping[Any, Any]", value).items()))
+        return items and f"{type(value).__name__} {items}"
+    if not isinstance(value, list | tuple | set | frozenset):
+        return None
+    parts = [_said(x) for x in cast("list[Any]", value)]
+    ordered = parts if isinstance(value, list | tuple) else sorted(map(str, parts))  # sets have no order
+    return None if None in parts else f"{type(value).__name__} {ordered}"
 
 
 def _digest(code: CodeType, defaults: str = "") -> str:
