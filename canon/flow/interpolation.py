@@ -47,6 +47,8 @@ def states_at(task: Task, samples: Samples, times: Array) -> Array:
             "events changed the state on the way, which steps from a sample do not know: propagate(…, times=…)"
         )
     orbits = samples.y.shape[2]
+    if not times.size:
+        return np.empty((len(samples.y), 0, orbits))
     loop = compiled_loop(task.system, task.method, fixed_precision(task.precision), orbits)
     filled = np.minimum(np.arange(-(-orbits // loop.number.lanes) * loop.number.lanes), orbits - 1)
     steps = steps_between(loop, task.method, task.plan)

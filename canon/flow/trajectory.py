@@ -336,16 +336,21 @@ class Trajectory:
         """Return the state at any time inside the span, shape (2n,), or at many, (2n, times).
 
         Taylor, where ``propagate(…, dense=True)`` kept its polynomials: as accurate as the steps, that is to the
-        method's tolerance. Methods of fixed steps: the states of the run, bit for bit at its steps (implicit ones: to
-        round-off), from the sample before by steps of the run and one shorter step, which errs as one of the method.
+        method's tolerance. Methods of fixed steps: the states of the run, bit for bit at its steps (implicit ones and
+        :class:`canon.flow.ExtendedPhaseSpace`: to round-off), from the sample before by steps of the run and one
+        shorter step, which errs as one of the method.
 
         Raises
         ------
         ValueError
-            A time lies outside the span; or what is needed was not kept.
+            A time lies outside the span, or times are no list; or what is needed was not kept.
         """
         record = self.record
         task, times = record.task, np.atleast_1d(np.asarray(t, dtype=np.float64))
+        if times.ndim > 1:
+            raise ValueError(
+                f"times of shape {times.shape}: give one time or a list of them, such as t.ravel()"
+            )
         found = states_at(task, record.samples, times)[task.system.rows]
         found = found[:, :, 0] if task.single else found
         return found[:, 0] if np.ndim(t) == 0 else found

@@ -243,3 +243,35 @@ def test_methods_take_their_arguments_in_any_type_or_say_what_they_are():
     omegas = {"1.2": 1.2, ".5": 0.5, "5.": 5, "2e1": 20, "=3": 3, "1.5e-1": 0.15}
     for text, omega in omegas.items():
         assert method_named(f"tao-4, omega {text}") == ExtendedPhaseSpace(4, omega=omega)
+
+
+def test_single_precision_refuses_a_rate_that_it_has_not():
+    weak = Hamiltonian(p**2 / 2 + sp.Rational(1, 10**50) * x, [x], [p])
+    slow = {"method": "verlet", "step": 1e23, "samples": 1}
+    with pytest.raises(ValueError, match="the rate of p_x at the start is 1e-50 in size, but 0 in single"):
+        propagate(weak, (0, 1e25), [0, 0], precision="single", **slow)
+    assert np.allclose(propagate(weak, (0, 1e25), [0, 0], **slow).final, [-0.5, -1e-25], atol=0)
+    # in little time that rate comes to nothing in any precision
+    assert list(propagate(weak, (0, 1), [1, 0], precision="single", **VERLET).final) == [1, 0]
+
+
+def test_places_of_a_section_are_in_the_precision_of_the_motion():
+    how = {"method": "sofroniou-spaletta-10", "step": 0.02}
+    found = {
+        precision: poincare_section(
+            "henon-heiles", (0, 40), [0.0, 0.1, 0.45, 0.0], "x", precision=precision, **how
+        )
+        for precision in ("compensated", "extended")
+    }
+    errors = {precision: abs(section.energy_change).max() for precision, section in found.items()}
+    assert errors["extended"] < 4e-18
+    assert np.allclose(found["extended"].y, found["compensated"].y, rtol=0, atol=1e-14)
+
+
+def test_times_of_a_motion_are_one_or_a_list():
+    run = propagate(oscillator, (0, 1), [1, 0], **VERLET)
+    assert run([]).shape == (2, 0)
+    assert run([0.5]).shape == (2, 1)
+    assert run(0.5).shape == (2,)
+    with pytest.raises(ValueError, match=r"times of shape \(2, 2\): give one time or a list"):
+        run(np.zeros((2, 2)))

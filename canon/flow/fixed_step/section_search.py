@@ -266,12 +266,15 @@ class _Search:
             return _Found(nothing, nothing, np.zeros(0), states, states, 0, 0)
         filled = np.minimum(np.arange(blocks * lanes), count - 1)
         g, (lane, step) = noted.g[filled].astype(np.float64), noted.where[filled].T
-        low = noted.e if loop.compensated else np.zeros_like(noted.y)
+        one = replace(loop.number, lanes=1)
+        # The states are of the loop's own numbers, which doubles may not hold.
+        before, rest = (part.reshape(-1, size).T for part in one.unpacked(noted.y[filled].ravel()))
+        rest = noted.e[filled].T if loop.compensated else rest
         parts = np.clip(g[:, 0] / (g[:, 0] - g[:, 1]), 0.0, 1.0)
         t0, h = self.steps.t0, self.steps.h
         times = _as_number(loop, t0) + step.astype(loop.number.dtype) * _as_number(loop, h)
         base, slope = self._affine()
-        own = LoopBuffers(loop, noted.y[filled].T.astype(np.float64), low[filled].T.astype(np.float64), base)
+        own = LoopBuffers(loop, before, rest, base)
         code = _kept_places(self.system, *self.surface, loop)
         kind = loop.number.dtype
         memory: list[npt.NDArray[Any]] = [
@@ -279,7 +282,6 @@ class _Search:
             np.zeros(size * lanes, dtype=kind), np.zeros(loop.carry * lanes, dtype=kind),
             np.zeros(len(base[0]) * lanes, dtype=kind),
         ]  # fmt: skip
-        one = replace(loop.number, lanes=1)
         read = [one.packed(*pair) for pair in (base, slope)]
         code.call(
             loop.code.address, own.y.ctypes.data, own.e.ctypes.data,

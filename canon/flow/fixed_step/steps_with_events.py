@@ -91,8 +91,8 @@ def run_with_events(
                 old = LoopState.of(buffers)
                 new, part, known = locator.locate(n - 1, LoopState.in_copy(buffers, *before), old)
                 if not known:  # stopped, maybe at the very end of the step
-                    if reached > stops[0] and _same_time(steps, reached, n - 1 + part):
-                        del states[-1], beyond[-1]  # or where a state has just been kept
+                    if _same_time(steps, reached, n - 1 + part):
+                        _forget_last(states, beyond)
                     states.append((new.high, new.low))
                     beyond.append(buffers.beyond())
                     return _run(states, beyond, loop, started), tuple(locator.crossings), n - 1 + part
@@ -112,6 +112,12 @@ def run_with_events(
 def _same_time(steps: PartialSteps, reached: Fraction, place: Fraction) -> bool:
     """Return whether doubles do not tell the times of two places, counted in steps."""
     return float(steps.time(0, reached)) == float(steps.time(0, place))
+
+
+def _forget_last(states: list[tuple[Array, Array]], beyond: list[Memory]) -> None:
+    """Forget the state that was kept last, where it is not the start."""
+    if len(states) > 1:
+        del states[-1], beyond[-1]
 
 
 def _run(

@@ -30,6 +30,7 @@ class Event:
 
     A crossing is a change of sign through zero, not by a jump or over a pole, as tan θ has. A motion that touches g = 0
     and turns back on the same side crosses nothing, nor does one that starts at g = 0, at rest or not, cross there.
+    A step of fixed size that ends just where g has no value, at a pole, ends the motion with an error.
 
     With :class:`canon.Taylor` the zero is that of the step's own Taylor polynomial. With :class:`canon.DOP853` the
     step's interpolant is cut until g and its rate are in each part as at its ends; where that takes too many parts the

@@ -32,6 +32,9 @@ _LOST = 1e-6
 _LEAST = 2.0**-1074
 """The least positive double: a rate of its size is rounded, however well it was computed."""
 
+_LEAST_SINGLE, _SMALL_SINGLE = 2.0**-150, 2.0**-126
+"""What becomes nothing in single precision, and the least number that it has to all its digits."""
+
 _NOTHING_HAPPENS = 1e-3
 """A motion that changes by less than this part of itself in all of the time is no matter of its units."""
 
@@ -65,9 +68,12 @@ def check_magnitudes(
     ------
     ValueError
         The equations in doubles differ from those in numbers of any size; or the coefficients of Taylor series
-        leave doubles, as time is measured in units much too large or too small.
+        leave doubles, as time is measured in units much too large or too small; or a rate is nothing in single
+        precision that would come to something.
     """
     start = span[0]
+    if precision == "single":
+        _check_single(system, rates, abs(float(span[1] - start)))
     if precision == "double-double":
         _check_angles(system, state, start)
     point = [*state.tolist(), float(start)]
@@ -92,6 +98,16 @@ def check_magnitudes(
 @functools.lru_cache(maxsize=_SYSTEMS)
 def _has_ordinary_parameters(system: HamiltonEquations) -> bool:
     return all(not x or 1 / _FAR < abs(x) < _FAR for x in system.parameters.values())
+
+
+def _check_single(system: HamiltonEquations, rates: Array, span: float) -> None:
+    """Make sure that no rate is nothing in single precision that would come to something in all of the time."""
+    for name, rate in zip((*system.q, *system.p), abs(rates).tolist(), strict=True):
+        if 0 < rate < _LEAST_SINGLE and rate * span > _SMALL_SINGLE:
+            raise ValueError(
+                f"the rate of {name} at the start is {rate:.3g} in size, but 0 in single precision, which ends at "
+                "1e-45. Choose units in which lengths, times and masses are nearer to 1, or precision='double'"
+            )
 
 
 def _check_angles(system: HamiltonEquations, state: Array, start: Fraction) -> None:

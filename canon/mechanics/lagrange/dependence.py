@@ -6,7 +6,7 @@ redundant, its multiplier undetermined, or the rows contradict one another. For 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from sympy import Expr, Symbol
@@ -46,6 +46,10 @@ class DependentConstraintsError(ValueError):
         self.rows = rows
         self.combination = combination
         self.contradictory = contradictory
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return what makes this error again, in another process too."""
+        return type(self), (str(self), self.rows, self.combination, self.contradictory)
 
 
 def check_independent(
