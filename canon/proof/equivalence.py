@@ -259,7 +259,10 @@ def _augmented(
     rows: list[tuple[Expr, ...]] = []
     for number, equation in enumerate(system, start=1):
         expr = given_expression(equation, f"equation {number} of the {which} system")
-        row = [cast("Expr", expr.diff(u).xreplace(at_rest)) for u in unknowns]
+        try:
+            row = [cast("Expr", expr.diff(u).xreplace(at_rest)) for u in unknowns]
+        except ValueError as reason:  # SymPy keeps the derivative of floor(u) by u, and has none by 0
+            raise NotAffineError(which, number - 1, expr) from reason
         row.append(cast("Expr", expr.xreplace(at_rest)))
         if not is_affine(expr, unknowns):
             again = sp.Add(*(slope * u for slope, u in zip(row, unknowns, strict=False)), row[-1])

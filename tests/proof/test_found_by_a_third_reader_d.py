@@ -115,3 +115,48 @@ def test_a_system_that_is_nowhere_solvable_is_equivalent_to_another_such():
     assert equivalent_equations([u - x, u - x - 1], [hidden * u - 1], [u]).holds
     assert not equivalent_equations([u - x, u - x - 1], [x * u - 1], [u]).holds
     assert equivalent_equations([u + s, u + s - y], [u, u - y], [u, s]).holds
+
+
+@pytest.mark.parametrize("condition", [sp.Eq(x, 1.0), x > 0.5, sp.Or(x < -0.5, x > 1)])
+def test_rounded_numbers_in_a_domain_are_refused_as_those_in_expressions_are(condition):
+    with pytest.raises(ValueError, match="is a rounded number"):
+        Domain((condition,))
+    assert equal(x**2, sp.Rational(1, 4), Domain((sp.Eq(x, sp.Rational(1, 2)),))).holds
+
+
+def test_inequalities_that_leave_one_point_are_no_open_domain():
+    at_two, pinned = sp.Piecewise((5, sp.Eq(x, 2))), Domain((x >= 2, x <= 2))
+    assert not equal(at_two, 5, pinned, budget=2).fails
+    assert not equal(at_two, 4, pinned, budget=2).holds
+    assert equal(at_two, 5, Domain((x > 2, x < 3)), budget=2).fails
+    hidden = (x + 1) ** 2 - x**2 - 2 * x - 1
+    assert not vanishes(hidden / x, Domain((x >= 0, x <= 0)), budget=2).holds
+    assert vanishes(hidden / x, Domain((x >= 0,))).holds
+
+
+def test_a_symbol_that_is_declared_not_real_is_complex():
+    z = sp.Symbol("z", real=False)
+    assert not vanishes(sp.sqrt(z**2) - abs(z)).holds
+    assert not vanishes(abs(z) ** 2 - z**2).holds
+    assert vanishes((z + 1) ** 2 - z**2 - 2 * z - 1).holds
+    w = sp.Symbol("w")
+    assert vanishes(sp.sqrt(w**2) - abs(w)).holds
+
+
+def test_a_rational_symbol_has_no_irrational_counterexample():
+    r = sp.Symbol("r", rational=True)
+    assert not vanishes(r - 1, Domain((sp.Eq(r**2, 2), r > 0)), budget=2).fails
+    assert vanishes(x - 1, Domain((sp.Eq(x**2, 2), x > 0)), budget=2).fails
+
+
+def test_a_budget_without_end_is_a_long_one():
+    unproved = sp.gamma(2 * y) - sp.gamma(y) * sp.gamma(y + sp.Rational(1, 3))
+    assert vanishes(sp.Matrix([unproved, unproved * y]), budget=float("inf")).fails
+    same = sp.gamma(2 * u) - 2 ** (2 * u - 1) / sp.sqrt(sp.pi) * sp.gamma(u) * sp.gamma(u + sp.Rational(1, 2))
+    assert not vanishes(sp.Matrix([same, same * u]), Domain((u > 0,)), budget=float("inf")).fails
+
+
+def test_equations_with_steps_of_the_unknown_are_not_affine():
+    with pytest.raises(ValueError, match="equation 1 of the first system is not affine"):
+        equivalent_equations([sp.floor(u) - 1], [u - 1], [u])
+    assert equivalent_equations([u / 2 - x], [u - 2 * x], [u]).holds
