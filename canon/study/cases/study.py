@@ -191,6 +191,9 @@ def _cases(table: Mapping[str, Any], where: str, own: Mapping[str, Formula | Sys
         )
     try:
         axes = [_listed(table.get(name)) for name in AXES]
+        listed = {**dict(zip(AXES, axes, strict=True)), **{k: _listed(v) for k, v in parameters.items()}}
+        if empty := [name for name, values in listed.items() if not values]:
+            raise ValueError(f"{empty[0]} has no values, which leaves no case: give one, or leave it out")
         if is_heyoka_system(table["system"]):  # itself a list
             axes[0] = [table["system"]]
         if math.prod(map(len, (*axes, *map(_listed, parameters.values())))) > MOST_CASES:
@@ -221,6 +224,11 @@ def _system(
             raise ValueError(
                 f"give changed values of {given.name} as parameters, not inside the scene: {changed}"
             )
+        if _what_moves(given) != _what_moves(find(given.name)):
+            raise ValueError(
+                f"a study knows a scene by its name, and this {given.name} is another than canon's: "
+                "give its Lagrangian or Hamiltonian, and numbers as start"
+            )
         return given.name
     used = {str(symbol) for symbol in _symbols(given)}
     first = {name: _number(name, _listed(value)[0]) for name, value in parameters.items() if name in used}
@@ -231,6 +239,14 @@ def _system(
             f"the system holds {', '.join(missing)}: give each a value, parameters={{name: value}}"
         )
     return system_text(given, parameters=first)
+
+
+def _what_moves(scene: Scene) -> tuple[Any, ...]:
+    """Return what decides how a scene moves, but for the values of its parameters."""
+    built = (scene.L_of, scene.H_of, scene.bodies_of, scene.V_of, scene.forces_of)
+    bound = (scene.holonomic_of, scene.nonholonomic_of)
+    starts = [(start.name, start.q, start.v, start.p) for start in scene.starts]
+    return scene.coordinates, built, bound, starts, scene.time_scale
 
 
 def _told_apart(systems: Sequence[str | Formula | SystemText]) -> list[str | Formula | SystemText]:

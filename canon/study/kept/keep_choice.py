@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import reprlib
+from numbers import Number
 from types import CodeType, FunctionType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     Function = Callable[..., Any]
 
@@ -74,12 +77,12 @@ def chosen_functions(functions: Mapping[str, Function]) -> Choice:
     """Return the names of functions whose results are kept, each with a digest of its code.
 
     The digest makes a changed function's results others: a case is run anew. It is over the function's own
-    instructions, names and constants; what it calls or encloses is not looked at.
+    instructions, names, constants and the defaults of its arguments; what it calls or encloses is not looked at.
 
     Raises
     ------
     TypeError, ValueError
-        One of them is no function, or its name is no name.
+        One of them is no function, its name is no name, or a default is of a kind that has no digest.
 
     Examples
     --------
@@ -99,15 +102,37 @@ def chosen_functions(functions: Mapping[str, Function]) -> Choice:
             raise ValueError(
                 f"what is kept can't be called {name!r}: give letters and digits, and none of canon's names"
             )
-        found.append((name, f"function {_digest(function.__code__, _plain(function))}"))
+        found.append((name, f"function {_digest(function.__code__, _defaults(name, function))}"))
     return tuple(found)
 
 
-def _plain(function: FunctionType) -> str:
-    """Return the defaults of a function that are numbers or texts."""
+def _defaults(name: str, function: FunctionType) -> str:
+    """Return the defaults of a function as text that is the same in every process."""
     named = (function.__kwdefaults__ or {}).items()
     given = (*enumerate(function.__defaults__ or ()), *sorted(named))
-    return repr([each for each in given if isinstance(each[1], int | float | str | None)])
+    try:
+        return repr([(place, _told(value)) for place, value in given])
+    except TypeError as reason:
+        raise TypeError(f"keep = {{{name!r}: …}}: a default of the function is {reason}") from None
+
+
+def _told(value: Any) -> object:
+    """Return what a value is, in numbers, texts and tuples; of a function, class or module its name."""
+    if value is None or isinstance(value, Number | str | bytes | range | slice):
+        return value
+    if isinstance(value, np.ndarray):
+        return ("array", value.dtype.str, value.shape, _told(value.tolist()))
+    if isinstance(value, list | tuple):
+        return (type(value).__name__, *map(_told, cast("Sequence[Any]", value)))
+    if isinstance(value, set | frozenset):
+        return ("set", *sorted(repr(_told(each)) for each in cast("Iterable[Any]", value)))
+    if isinstance(value, dict):
+        return ("dict", *sorted(repr((_told(k), _told(v))) for k, v in cast("dict[Any, Any]", value).items()))
+    if isinstance(name := getattr(value, "__qualname__", getattr(value, "__name__", None)), str):
+        return ("named", name)
+    raise TypeError(
+        f"a {type(value).__name__}, which can't be told from another: give numbers, texts or lists of such"
+    )
 
 
 def _digest(code: CodeType, defaults: str = "") -> str:
