@@ -36,7 +36,7 @@ reading the table:
 examples:
   canon drift henon-heiles
   canon drift kepler --method kahan-li-8 --method rk4 --step 0.02 --periods 10000
-  canon drift simple-pendulum --set l=2 --start large --plot pendulum.png
+  canon drift simple-pendulum --set l=2 --start small --plot pendulum.png
   canon drift henon-heiles --method taylor --tolerance 1e-10 --json
   canon drift kepler --observable energy --observable "angular momentum" --method verlet --method rk4
   canon drift henon-heiles --orbits 64 --method kahan-li-8 --precision double

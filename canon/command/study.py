@@ -177,6 +177,7 @@ def _export(arguments: argparse.Namespace) -> int:
     from canon.study.errors import StudyError
 
     kind, results = FORMATS.get(arguments.output.suffix.lower()), _asked_for(arguments)
+    _not_over_the_store(arguments)
     if kind is None:
         known = ", ".join(f"{ending} ({name})" for ending, name in FORMATS.items())
         raise StudyError(f"{arguments.output}: the ending of its name says the format; there are {known}")
@@ -196,6 +197,7 @@ def _report(arguments: argparse.Namespace) -> int:
     from canon.command.followed_report import follow
     from canon.plot.study_page import study_report
 
+    _not_over_the_store(arguments)
     if arguments.follow is None:
         page = study_report(_asked_for(arguments), arguments.store.stem)
         arguments.output.write_text(page, encoding="utf-8")
@@ -204,6 +206,13 @@ def _report(arguments: argparse.Namespace) -> int:
         follow(store, partial(_asked_for, arguments), arguments.output, arguments.follow, told)
     print(f"report: {arguments.output}")
     return 0
+
+
+def _not_over_the_store(arguments: argparse.Namespace) -> None:
+    from canon.study.errors import StudyError
+
+    if arguments.output.resolve() == arguments.store.resolve():
+        raise StudyError(f"{arguments.output} holds the results themselves; give another file to write to")
 
 
 def _asked_for(arguments: argparse.Namespace) -> Results:

@@ -223,7 +223,9 @@ def _equivalent(
 
 
 def without_solution(system: Sequence[Expr], unknowns: Sequence[Symbol], domain: Domain = EVERYWHERE) -> bool:
-    """Tell whether a system is certainly without solution at some point of the domain, and so at generic ones.
+    """Tell whether a system is certainly without solution at generic points of the domain.
+
+    At some point is not enough: x u = 1 has no solution at x = 0 alone.
 
     Parameters
     ----------
@@ -237,8 +239,13 @@ def without_solution(system: Sequence[Expr], unknowns: Sequence[Symbol], domain:
     >>> without_solution([u + v, u + v - x], [u, v]), without_solution([u + v - x], [u, v])
     (True, False)
     """
-    augmented = _augmented(system, unknowns, domain, "given", time.monotonic() + 1.0)
-    return not isinstance(augmented, str) and len(unknowns) in largest_minor(augmented, domain).columns
+    deadline = time.monotonic() + 1.0
+    augmented = _augmented(system, unknowns, domain, "given", deadline)
+    if isinstance(augmented, str):
+        return False
+    field = is_analytic([entry for row in augmented for entry in row], domain)
+    basis = _Basis(augmented, "given", domain, deadline, field)
+    return basis.needs_rest and basis.is_inconsistent
 
 
 def _augmented(
@@ -252,7 +259,10 @@ def _augmented(
     rows: list[tuple[Expr, ...]] = []
     for number, equation in enumerate(system, start=1):
         expr = given_expression(equation, f"equation {number} of the {which} system")
-        row = [cast("Expr", expr.diff(u).xreplace(at_rest)) for u in unknowns]
+        try:
+            row = [cast("Expr", expr.diff(u).xreplace(at_rest)) for u in unknowns]
+        except ValueError as reason:  # SymPy keeps the derivative of floor(u) by u, and has none by 0
+            raise NotAffineError(which, number - 1, expr) from reason
         row.append(cast("Expr", expr.xreplace(at_rest)))
         if not is_affine(expr, unknowns):
             again = sp.Add(*(slope * u for slope, u in zip(row, unknowns, strict=False)), row[-1])
@@ -282,7 +292,10 @@ def _rows_follow(
     if not basis.is_sure:
         lost = f"the minor {basis.minor} of the {other} system may vanish on a piece"
         undecided.append(Evidence("rank", lost))
-    for number, row in enumerate(() if basis.is_inconsistent else rows):
+    if basis.needs_rest and not basis.is_inconsistent:
+        unknown = f"whether the {other} system has solutions at generic points"
+        return Verdict(Status.UNDECIDED, evidence=(Evidence("rank", unknown),))
+    for number, row in enumerate(() if basis.needs_rest else rows):
         for verdict in basis.verdicts_on(row):
             if verdict.fails:
                 stray = Stray(which, number, equations[number])
@@ -317,7 +330,10 @@ class _Basis:
     @cached_property
     def is_sure(self) -> bool:
         """Whether the minor is proved to vanish on no piece of the domain."""
-        minor, domain = self.minor, self.domain
+        return self._is_sure(self.minor)
+
+    def _is_sure(self, minor: Expr) -> bool:
+        domain = self.domain
         return (
             self.field
             or proved_sign(minor, domain) in ("+", "-")
@@ -326,8 +342,19 @@ class _Basis:
         )
 
     @property
-    def is_inconsistent(self) -> bool:
+    def needs_rest(self) -> bool:
+        """Whether the largest minor that was found needs the column of the rest."""
         return bool(self.rows) and len(self.rows[0]) - 1 in self.pivots.columns
+
+    @cached_property
+    def is_inconsistent(self) -> bool:
+        """Whether the slopes alone are proved to have the smaller rank; balls may only not tell them from zero."""
+        rest = len(self.rows[0]) - 1
+        slopes = self.pivots.left_of(rest)
+        minor = determinant([[self.rows[i][c] for c in slopes.columns] for i in slopes.rows])
+        outside = [row for number, row in enumerate(self.rows) if number not in slopes.rows]
+        bordered = (d for row in outside for d in self._bordered(row[:rest], slopes))
+        return self._is_sure(minor) and all(self._vanishes(d).holds for d in bordered)
 
     @cached_property
     def is_spanned(self) -> bool:
@@ -352,12 +379,13 @@ class _Basis:
     def _vanishes(self, f: Expr) -> Verdict:
         return vanishes(f, self.domain, max(0.1, self.deadline - time.monotonic()))
 
-    def _bordered(self, row: Sequence[Expr]) -> Iterator[Expr]:
-        """Border the pivots' minor with a row and, in turn, each column outside it."""
+    def _bordered(self, row: Sequence[Expr], pivots: Pivots | None = None) -> Iterator[Expr]:
+        """Border a minor, the largest if no other is given, with a row and, in turn, each of its columns outside it."""
+        pivots = pivots or self.pivots
         for column in range(len(row)):
-            if column not in self.pivots.columns:
-                columns = (*self.pivots.columns, column)
-                inner = ([self.rows[i][c] for c in columns] for i in self.pivots.rows)
+            if column not in pivots.columns:
+                columns = (*pivots.columns, column)
+                inner = ([self.rows[i][c] for c in columns] for i in pivots.rows)
                 yield determinant([*inner, [row[c] for c in columns]])
 
 

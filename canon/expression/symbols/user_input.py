@@ -29,6 +29,10 @@ __all__ = [
 ]
 
 
+LONGEST = 1e8
+"""Seconds of the longest budget."""
+
+
 class NotFiniteError(ValueError):
     """What was given, or came out, is infinite or undefined."""
 
@@ -106,7 +110,7 @@ def given_symbols(x: Any, name: str = "") -> tuple[Symbol, ...]:
 
 
 def given_seconds(budget: Any) -> float:
-    """Return a budget of time as it was given.
+    """Return a budget of time as it was given; three years for one without end, as no lock waits for ever.
 
     Raises
     ------
@@ -124,7 +128,7 @@ def given_seconds(budget: Any) -> float:
         raise TypeError(f"budget should be a number of seconds, not {described(budget)}")
     if budget != budget:
         raise ValueError("budget should be a number of seconds, not NaN")
-    return float(budget)
+    return min(float(budget), LONGEST)
 
 
 def all_of(x: Any, count: int, name: str, of: str) -> Sequence[Any]:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
+from sympy.core.relational import Relational
 
 from canon.proof.definedness.formula_around import NoPiece, formula_around, put_in
 from canon.proof.definedness.hazards import branching, hazards, incomplete, unconditional
@@ -199,11 +200,14 @@ def _valued(expr: Expr, point: Mapping[Symbol, sp.Rational], deadline: float) ->
 
 
 def _is_nonzero_somewhere(argument: Expr, domain: Domain, deadline: float) -> bool:
-    """Tell whether a point is known where something is not zero: of the domain, or any if it is meromorphic."""
+    """Tell whether a point is known where something is not zero: of the domain, or any if it is open."""
     found = anatomy([argument])
     draws = [domain.points(found.symbols, 4, deadline=deadline, but_functions=True)]
-    equalities = any(isinstance(c, sp.Eq) for c in domain.conditions)
-    if not equalities and not branching(found.parts):
+    relations = anatomy(domain.conditions).of(Relational)
+    is_open = all(
+        isinstance(r, sp.Gt | sp.Lt | sp.Ne) for r in relations
+    )  # x ≥ 2 and x ≤ 2 leave no room around 2
+    if is_open and not branching(found.parts):
         draws.append(EVERYWHERE.points(found.symbols, 3, deadline=deadline))
     for draw in draws:
         for shown, point in _examples([argument], draw):

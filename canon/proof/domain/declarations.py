@@ -20,9 +20,11 @@ def _declared(named: Basic) -> Mapping[str, bool]:
 
 
 def declared_complex(symbol: Basic) -> bool:
-    """Tell whether a symbol or function was declared complex and not real; all others are read as real."""
+    """Tell whether a symbol or function was declared complex, or not to be real; all others are read as real."""
     said = _declared(symbol)
-    return said.get("real") is not True and ("complex" in said or "imaginary" in said)
+    if said.get("real") is not None:
+        return not said["real"]
+    return "complex" in said or "imaginary" in said
 
 
 def said_of(named: Basic) -> dict[str, bool]:

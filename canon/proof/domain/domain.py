@@ -13,7 +13,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, cast
 
-from sympy import Eq, Ge, Gt, Integer, Le, Lt, Ne, Rational, Symbol, oo, sympify
+from sympy import Eq, Float, Ge, Gt, Integer, Le, Lt, Ne, Rational, Symbol, oo, sympify
 from sympy.core.function import AppliedUndef
 from sympy.logic.boolalg import Boolean
 
@@ -24,6 +24,7 @@ from canon.proof.domain.declarations import allows, declared_complex, said_of
 from canon.proof.domain.feasible_points import moved_inside
 from canon.proof.domain.rational_points import rational_solution
 from canon.proof.domain.relations import isolated, linear, parts_of, unfolded
+from canon.proof.trees.anatomy import anatomy
 from canon.proof.trees.polynomial import polynomial_factors
 from canon.proof.trees.sympy_types import free_symbols, rational
 
@@ -52,6 +53,11 @@ class Domain:
     box
         Ranges from which sample points can usefully be drawn: a hint, not part of the claim.
 
+    Raises
+    ------
+    TypeError, ValueError
+        Where a condition is none of SymPy's, or holds a floating-point number.
+
     Examples
     --------
     >>> from sympy import symbols
@@ -75,6 +81,12 @@ class Domain:
                 raise TypeError(
                     f"a condition should be one of SymPy's, such as x > 0 or Ne(x, 0), not {condition!r}"
                 )
+        rounded = anatomy(self.conditions).of(Float)
+        if rounded:
+            raise ValueError(
+                f"{min(rounded, key=str)} in the conditions is a rounded number, from which nothing exact follows; "
+                "write it as a fraction, such as Rational('0.1') or Rational(1, 10)"
+            )
         bounds = (isolated(bound) for condition in self.conditions for bound in unfolded(condition))
         object.__setattr__(self, "conditions", tuple(bounds))
         for name, ends in box.items():

@@ -31,27 +31,39 @@ POINTS = 12
 
 @dataclass(frozen=True)
 class Pivots:
-    """Rows and columns of a minor that is certainly nonzero, as large as was found."""
+    """Rows and columns of a minor that is certainly nonzero, as large as was found; the rest's comes last."""
 
     rows: tuple[int, ...]
     columns: tuple[int, ...]
 
+    def left_of(self, column: int) -> Pivots:
+        """Return the pivots without that of a last column."""
+        kept = len(self.columns) - (column in self.columns)
+        return Pivots(self.rows[:kept], self.columns[:kept])
+
 
 def largest_minor(system: Rows, domain: Domain) -> Pivots:
-    """Find the largest minor that balls certify as nonzero at some point of the domain."""
+    """Find the largest minor of slopes and rest that balls certify as nonzero at some point of the domain.
+
+    The rest, the last column, is taken last: x u = 1 has no solution where x = 0, and one everywhere else.
+    """
     best = Pivots((), ())
     if not system:
         return best
     symbols = anatomy([entry for row in system for entry in row]).symbols
     system = _with_examples(system)
-    full = min(len(system), len(system[0]))
+    rest = len(system[0]) - 1
+    most = (min(len(system), rest), min(len(system), rest + 1))
     for point in domain.points(symbols, POINTS, seed=3, but_functions=True):
         found = _pivots_at(system, point)
-        if len(found.rows) > len(best.rows):
-            best = found
-        if len(best.rows) == full:
+        best = max(best, found, key=lambda pivots: _ranks(pivots, rest))
+        if _ranks(best, rest) == most:
             break
     return best
+
+
+def _ranks(pivots: Pivots, rest: int) -> tuple[int, int]:
+    return len(pivots.left_of(rest).rows), len(pivots.rows)
 
 
 def _with_examples(system: Rows) -> Rows:

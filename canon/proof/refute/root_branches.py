@@ -128,15 +128,20 @@ def _one_less(expr: Expr, domain: Domain) -> Iterator[tuple[Symbol, Expr, Domain
     """Yield real values of one symbol: the one of a linear equality, or both roots of one of degree two."""
     staying = under_derivatives(expr, domain)
     for s, solution, narrowed in eliminations(domain, staying):
-        if s.is_real and not s.is_integer and certainly_real(solution):
+        if _takes_any(s) and certainly_real(solution):
             yield s, solution, narrowed
             return
     for condition in domain.conditions:
         if isinstance(condition, sp.Eq) and isinstance(condition.lhs, sp.Expr):
             gap = condition.lhs - cast("Expr", condition.rhs)
             for s in by_name(gap):
-                if s not in staying and s.is_real and not s.is_integer:
+                if s not in staying and _takes_any(s):
                     yield from _roots(gap, s, domain, condition)
+
+
+def _takes_any(s: Symbol) -> bool:
+    """Tell whether a symbol stands for any real number, and not only for rational ones, or for none of the integers."""
+    return bool(s.is_real) and s.is_rational is None and s.is_integer is None
 
 
 def _roots(gap: Expr, s: Symbol, domain: Domain, condition: Boolean) -> Iterator[tuple[Symbol, Expr, Domain]]:

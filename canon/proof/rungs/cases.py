@@ -15,12 +15,13 @@ from canon.proof.domain.reality import certainly_real
 from canon.proof.rungs.periods import period_of
 from canon.proof.trees.affine_form import is_affine
 from canon.proof.trees.anatomy import anatomy
+from canon.proof.trees.bound_variables import with_bound_variables
 from canon.proof.trees.polynomial import is_left_out, polynomial_factors
 from canon.proof.trees.replacement import KINKED, NoValue, defined_nowhere, replaced
 from canon.proof.trees.sympy_types import arguments, by_name, free_symbols
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from sympy import Expr, Symbol
 
@@ -53,31 +54,37 @@ def cases(expr: Expr, domain: Domain) -> list[Case] | None:
     """Cut the domain so that one piecewise function less is left, or one symbol has a sign.
 
     The pieces cover the domain, so an expression that vanishes on each of them vanishes. Nothing is cut
-    under a derivative, which looks beyond the points of a piece, nor where SymPy refuses a value.
+    under a derivative, which looks beyond the points of a piece, nor by the sign of a variable of integration or
+    summation, which runs through all of its range, nor where SymPy refuses a value.
     """
-    if any(d.has(sp.Piecewise, *KINKED) for d in anatomy([expr]).of(sp.Derivative, sp.Subs)):
+    found = anatomy([expr])
+    if any(d.has(sp.Piecewise, *KINKED) for d in found.of(sp.Derivative, sp.Subs)):
         return None
     try:
-        return _cut(expr, domain)
+        return _cut(expr, domain, with_bound_variables(found))
     except NoValue:
         return None
 
 
-def _cut(expr: Expr, domain: Domain) -> list[Case] | None:
-    piecewise = sorted(expr.atoms(sp.Piecewise), key=sp.default_sort_key)
+def _cut(expr: Expr, domain: Domain, inside: set[sp.Basic]) -> list[Case] | None:
+    piecewise = sorted(expr.atoms(sp.Piecewise) - inside, key=sp.default_sort_key)
     if piecewise:
-        innermost = next(e for e in piecewise if not any(a.has(sp.Piecewise) for a in e.args))
-        return list(_pieces(expr, domain, innermost))
-    found = sorted(expr.atoms(*KINKED), key=sp.default_sort_key)
+        return list(_pieces(expr, domain, _innermost(piecewise)))
+    found = sorted(expr.atoms(*KINKED) - inside, key=sp.default_sort_key)
     found = [e for e in found if not any(map(declared_complex, e.free_symbols)) and e.free_symbols]
     if found:
-        innermost = next(e for e in found if not any(a.has(*KINKED) for a in e.args))
+        innermost = _innermost(found)
         if len(innermost.free_symbols) == 1 and not all(a.is_polynomial() for a in innermost.args):
             by_symbol = _by_symbol(innermost, domain, expr)
             if by_symbol is not None:
                 return by_symbol
         return _by_kind(expr, domain, innermost)
     return _by_integer(expr, domain) or _by_symbol(expr, domain) or _by_slope(expr, domain)
+
+
+def _innermost(parts: Sequence[Expr]) -> Expr:
+    """Return the first part that none of the others stands in."""
+    return next(p for p in parts if not any(other != p and p.has(other) for other in parts))
 
 
 def _by_integer(expr: Expr, domain: Domain) -> list[Case] | None:
@@ -179,6 +186,7 @@ def _by_symbol(deciding: Expr, domain: Domain, whole: Expr | None = None) -> lis
     if expr.has(sp.Derivative, sp.Subs):
         return None
     candidates: dict[Symbol, int] = {}
+    free = free_symbols(expr)
     for part in sp.preorder_traversal(deciding):
         branching = isinstance(part, sp.Function) and not isinstance(
             part,
@@ -186,7 +194,7 @@ def _by_symbol(deciding: Expr, domain: Domain, whole: Expr | None = None) -> lis
         )
         if branching or (isinstance(part, sp.Pow) and not part.exp.is_integer):
             for s in free_symbols(part):
-                if not (s.is_nonnegative or s.is_nonpositive or declared_complex(s)):
+                if s in free and not (s.is_nonnegative or s.is_nonpositive or declared_complex(s)):
                     candidates[s] = candidates.get(s, 0) + 1
     if not candidates:
         return None

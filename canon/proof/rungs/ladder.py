@@ -19,6 +19,7 @@ from canon.proof.rungs.conjugates import radicals_cancel
 from canon.proof.rungs.groups import groups
 from canon.proof.rungs.phases import arcs_cancel
 from canon.proof.trees.anatomy import Anatomy, anatomy
+from canon.proof.trees.bound_variables import with_bound_variables
 from canon.proof.trees.replacement import KINKED
 
 if TYPE_CHECKING:
@@ -167,7 +168,8 @@ def _where_defined(found: Anatomy, domain: Domain) -> Domain:
     """Add that the denominators do not vanish: the claim is about points where the expression is defined."""
     if found.has(Piecewise, ExprWithLimits):
         return domain
-    below = {power.base for power in found.of(Pow) if power.exp.is_negative}
+    inside = with_bound_variables(found)
+    below = {power.base for power in found.of(Pow) if power.exp.is_negative and power not in inside}
     below = {b for b in below if anatomy([b]).tree <= LARGE // 20}
     nonzero = [Ne(b, 0) for b in sorted(below, key=default_sort_key) if b.is_zero is None]
     added = [cast("Boolean", c) for c in nonzero if c not in (true, false)]

@@ -14,6 +14,7 @@ from sympy.functions.elementary.trigonometric import InverseTrigonometricFunctio
 
 from canon.expression.symbols.jacobi_functions import JACOBI
 from canon.proof.trees.anatomy import Anatomy, anatomy
+from canon.proof.trees.bound_variables import BINDING, bound_by
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -64,12 +65,15 @@ def replaced(
     Raises
     ------
     NoValue
-        Where SymPy refuses a part (Max of an imaginary number, a derivative by an expression, …) or would
+        Where SymPy refuses a part (Max of an imaginary number, a derivative by an expression, …), where a symbol
+        put in or taken out is bound in a sum or an integral that changes, or where SymPy would
         write out a number of very many digits; and where the deadline, a value of :func:`time.monotonic`, passes
         between two parts, for of quotients of quotients SymPy asks in exponential time whether they are infinite.
     """
     done: dict[sp.Basic, sp.Basic] = {}
-    for part in anatomy([expr]).parts:  # what a part consists of comes before it
+    found = anatomy([expr])
+    exchanged = _free_in(by) if found.has(*BINDING) else set[sp.Basic]()
+    for part in found.parts:  # what a part consists of comes before it
         if time.monotonic() > deadline:
             raise NoValue
         inner = tuple(done[a] for a in part.args)
@@ -79,12 +83,29 @@ def replaced(
             done[part] = part
         elif _too_long(part, inner):
             raise NoValue
+        elif not exchanged.isdisjoint(bound_by(part)):
+            done[part] = _but_for_bound(part, inner, by, deadline)
         else:
             try:
                 done[part] = _rebuilt(part, inner)
             except (ValueError, TypeError) as reason:
                 raise NoValue from reason
     return cast("_B", done[expr])
+
+
+def _free_in(by: Mapping[sp.Basic, sp.Basic]) -> set[sp.Basic]:
+    return set[sp.Basic]().union(*(e.free_symbols for pair in by.items() for e in pair))
+
+
+def _but_for_bound(
+    part: sp.Basic, inner: tuple[sp.Basic, ...], by: Mapping[sp.Basic, sp.Basic], deadline: float
+) -> sp.Basic:
+    """Replace in a substitution, inside which its own variables are others than the free ones of their names."""
+    bound = bound_by(part)
+    outside = {old: new for old, new in by.items() if bound.isdisjoint(old.free_symbols)}
+    if not isinstance(part, sp.Subs) or not bound.isdisjoint(_free_in(outside)):
+        raise NoValue
+    return part.func(replaced(part.args[0], outside, deadline), part.args[1], inner[2])
 
 
 def _rebuilt(part: sp.Basic, inner: tuple[sp.Basic, ...]) -> sp.Basic:

@@ -96,6 +96,9 @@ class Case:
     tags: tuple[str, ...] = field(default=(), compare=False)
 
     def __post_init__(self) -> None:
+        for name in ("span", "step", "tolerance"):  # 10 and 10.0 are one case, and should have one key
+            if isinstance(number := getattr(self, name), int):
+                object.__setattr__(self, name, float(number))
         if not 0.0 < self.span < math.inf:
             raise ValueError(
                 f"a run over a time of {self.span} makes no sense: give a positive, finite duration"

@@ -145,14 +145,15 @@ class Results(Sequence[Result]):
             ``span``, ``samples``, ``state`` (``"finished"``, ``"failed"``, ``"pending"``; the numbers of a start are
             ``start``), a parameter, a number of the outcome such as ``verdict`` (:class:`canon.study.Growth`, or its
             word, ``"bounded"``) or ``bound``, ``seconds``, and what else a :class:`canon.study.Result` has. A value is
-            asked for as it is, a list or set means any of its values, a function tells of a value whether it is wanted,
+            asked for as it is, a list, tuple, set, range or array means any of its values, a function tells of a value
+            whether it is wanted,
             and a class of methods all its methods. A start is asked for as it was given, a name or its numbers, and a
             list of numbers is one start. Cases that have no such value are left out.
 
         Raises
         ------
         ValueError
-            Nothing is called so.
+            Nothing is called so, or no state is.
 
         Examples
         --------
@@ -245,7 +246,14 @@ def _asked(name: str, given: Any) -> tuple[Any, ...]:
     """Return what is asked for as alternatives."""
     if name == "start":
         return _starts(given)
-    each = tuple(given) if isinstance(given, list | set | frozenset) else (given,)
+    if isinstance(given, np.ndarray):
+        given = np.ravel(given).tolist()
+    alternatives = isinstance(given, list | tuple | set | frozenset | range)
+    each: tuple[Any, ...] = tuple(given) if alternatives else (given,)
+    if name == "state":
+        known = [state.value for state in State]
+        if unknown := [one for one in each if isinstance(one, str) and one not in known]:
+            raise ValueError(f"no state is called {unknown[0]!r}; there are {', '.join(known)}")
     if name == "method":
         return tuple(method_of(one) if isinstance(one, str) else one for one in each)
     if name == "system":

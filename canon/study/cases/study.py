@@ -191,6 +191,9 @@ def _cases(table: Mapping[str, Any], where: str, own: Mapping[str, Formula | Sys
         )
     try:
         axes = [_listed(table.get(name)) for name in AXES]
+        listed = {**dict(zip(AXES, axes, strict=True)), **{k: _listed(v) for k, v in parameters.items()}}
+        if empty := [name for name, values in listed.items() if not values]:
+            raise ValueError(f"{empty[0]} has no values, which leaves no case: give one, or leave it out")
         if is_heyoka_system(table["system"]):  # itself a list
             axes[0] = [table["system"]]
         if math.prod(map(len, (*axes, *map(_listed, parameters.values())))) > MOST_CASES:
