@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from canon.expression.text.declared_names import key_of
 from canon.expression.text.notation import is_latex
 from canon.expression.text.tokens import MAX_CHARACTERS
 
@@ -23,7 +24,7 @@ _DOUBLE = re.compile(
 def without_program_marks(text: str, scope: Scope) -> str:
     """Return a text with blanks for comments and with ``0.5e0`` for ``0.5d0``, as long as it was.
 
-    Where a name begins as the exponent does, ``d0`` or ``d``, it is a factor.
+    Where a name begins as the exponent does, ``d0``, ``d_0`` or ``d``, it is a factor.
 
     Examples
     --------
@@ -36,7 +37,9 @@ def without_program_marks(text: str, scope: Scope) -> str:
     text = _COMMENT.sub(lambda found: " " * len(found.group()), text) if "#" in text or "%" in text else text
 
     def exponent(found: re.Match[str]) -> str:
-        taken = any(scope.declares(name) for name in (found["d"], f"{found['d']}{found['power']}"))
+        as_name = f"{found['d']}{found['power']}"
+        spelled = as_name.isalnum() and key_of(as_name) in {key_of(name) for name in scope.spelled}
+        taken = spelled or scope.declares(found["d"])
         return found.group() if taken else f"{found['number']}e{found['power']}"
 
     return _DOUBLE.sub(exponent, text)

@@ -24,7 +24,7 @@ from canon.expression.latex.pieces import (
 )
 from canon.expression.latex.understood_time import is_time
 from canon.expression.symbols.symbol import Coordinate, Momentum, Rate
-from canon.expression.text.open_readings import counts, is_angle, stem_of
+from canon.expression.text.open_readings import counts, is_angle, is_angle_of_functions, stem_of
 from canon.expression.text.syntax import Name, Node
 
 if TYPE_CHECKING:
@@ -34,23 +34,6 @@ if TYPE_CHECKING:
 
 __all__ = ["ArgumentEnd", "bare_argument"]
 
-_ANGLES = (
-    "theta",
-    "vartheta",
-    "phi",
-    "varphi",
-    "psi",
-    "alpha",
-    "beta",
-    "gamma",
-    "delta",
-    "epsilon",
-    "chi",
-    "eta",
-    "th",
-    "ph",
-)
-"""Letters that are angles wherever a function is taken of them alone."""
 _WAVES = (
     "k",
     "n",
@@ -98,7 +81,7 @@ class ArgumentEnd:
     def is_angle(self, node: Node) -> bool:
         """Whether every name in a factor is that of an angle."""
         names = [name.text for name in names_in(node) if name.text != "pi"]
-        return bool(names) and all(stem_of(name) in _ANGLES for name in names)
+        return bool(names) and all(map(is_angle_of_functions, names))
 
     def lies_before(self, taken: list[Node], item: Piece) -> bool:
         """Whether an argument is complete before a factor that no argument would go on with."""
@@ -121,6 +104,19 @@ class ArgumentEnd:
     def holds_what_moves(self, group: Group) -> bool:
         r"""Whether a bracket could go on with an argument, as in ``\cos\beta(x - v t)``."""
         return any(self._moves(name.text) or name.text in "xyzt" for name in _names_of(group))
+
+    def is_another_time(self, name: Name, group: Group) -> bool:
+        """Whether a bracket behind what moves holds the time and nothing else that moves, as in ``x(t - a)``."""
+        held = {inside.text for inside in _names_of(group)}
+        clock = self.scope.time.name
+        others = any(self._moves(text) for text in held if text != clock)
+        return (
+            group.column not in self.spaced
+            and name.text != clock
+            and self._moves(name.text)
+            and clock in held
+            and not others
+        )
 
     def divides(self, argument: tuple[Piece, ...], below: Piece) -> bool:
         r"""Whether a slash behind a function divides it, ``g\sin\theta/l``: nobody divides an angle by a length."""

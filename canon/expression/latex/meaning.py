@@ -146,6 +146,7 @@ class Meaning:
             self.refuse(
                 column, "a number before a fraction of numbers: a product or a mixed number?", r"put \cdot"
             )
+        left = unbraced(left.base) if isinstance(left, Powered) else left  # x^2(a) asks as x(a) does
         inner = first.inner if isinstance(left, Name) and isinstance(first, Group) else None
         rate = isinstance(inner, Name) and inner.text.endswith("dot") and self.text[inner.column - 1] == "\\"
         if isinstance(left, Name) and isinstance(inner, Tuple | Number | Name) and not rate:
@@ -154,6 +155,15 @@ class Meaning:
                 self.refuse(column, reason, "leave the argument out")
             reason = f"{left.text} is a declared symbol and can't be applied to anything"
             self.refuse(column, reason, "leave the brackets out for a product, or declare it in functions")
+        begun = self.text[: column - 1].rstrip().endswith((r"\left", ")"))  # in a print, or behind (t)
+        if (
+            isinstance(left, Name)
+            and isinstance(first, Group)
+            and not begun
+            and self.ends.is_another_time(left, first)
+        ):
+            reason = f"is {left.text} taken at another time here, or multiplied by this?"
+            self.refuse(column, reason, r"put \cdot for a product; what moves is taken at the time t alone")
 
     def raised(self, base: Piece, exponent: Node) -> Powered:
         """Return a factor with its exponent, where print shows what is raised."""
@@ -247,7 +257,8 @@ class Meaning:
         r"""Whether what follows ``\cdot`` could belong to the argument that ends here, as in ``\cos\omega\cdot t``."""
         if items and is_in_degrees(items[-1]):
             return False
-        if self.ends_with_derivative_of_fraction(items):
+        derived = len(items) > 1 and isinstance(items[-2], Operator) and isinstance(items[-1], Name)
+        if derived or self.ends_with_derivative_of_fraction(items):
             return True
         argument = [
             self.node(item) for item in bare_argument(items) if not isinstance(item, Mark | Head | Operator)
@@ -340,7 +351,7 @@ class Meaning:
             and following.exponent is None
         ):
             operand, end = self._declared(items, at + 1, following, following.function)
-            if not isinstance(operand, Power):
+            if end == len(items) and not isinstance(operand, Power):
                 return self.derivatives.of(operator, operand), end
         if isinstance(following, Group):
             return self.derivatives.of(operator, self.node(following)), at + 2
@@ -348,7 +359,7 @@ class Meaning:
             return self.derivatives.of(operator, following.node), at + 2
         name = following and unbraced(following)
         along = operator if operator.total else self.derivatives.along_the_motion(operator)
-        whole = operator.total or at + 2 == len(items)
+        whole = at + 2 == len(items)  # what d/dt r θ' reaches is not said
         if isinstance(name, Name) and along and whole and has_rate_or_is_momentum(name, self.scope):
             return self.derivatives.of(along, name), at + 2
         if isinstance(following, Head) and isinstance(following.function, Function):

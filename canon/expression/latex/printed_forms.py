@@ -15,7 +15,7 @@ __all__ = [
     "OTHERWISE",
     "PARTIAL",
     "PLAIN",
-    "PRINTED_CALL",
+    "is_printed_call",
     "refuse_open_e",
 ]
 
@@ -44,9 +44,25 @@ OF_SPECIAL_FUNCTIONS = {"W": "LambertW", "K": "elliptic_k", "E": "elliptic_e", "
 PRINTED_CALL = re.compile(r"(?:\^\{(?:[^{}]|\{(?:[^{}]|\{[^{}]{0,99}+\}){0,99}+\}){1,99}+\})?\\left\(")
 r"""How SymPy prints their argument, after a power."""
 
+_TYPED_AROUND_INTEGRALS = re.compile(r"\\[,;!]|/")
+"""What SymPy does not print beside Legendre's integrals."""
 _TYPED = re.compile(r"\^\s*[^\s{]|(?<!\\left)\(|\S\+|\+\S|\\(?:sin|cos|tan|exp|log|ln)(?!\{\\left\(|\^\{|h)")
 _WORD_BEFORE = re.compile(r"(?:(\\[A-Za-z]+)|[A-Za-z'])\s*$")
 _BEFORE = ("\\cdot", "\\pi", "\\left", "\\leq", "\\geq", "\\neq", "\\wedge", "\\vee")
+
+
+def is_printed_call(name: str, text: str, at: int, end: int) -> bool:
+    r"""Tell whether a special function of SymPy's print begins behind its name; books write ``K\left(k\right)`` of k.
+
+    Examples
+    --------
+    >>> is_printed_call("K", r"2 K\left(m\right)", 3, 18), is_printed_call("K", r"4\,K\left(k\right)", 4, 19)
+    (True, False)
+    """
+    if name not in OF_SPECIAL_FUNCTIONS or PRINTED_CALL.match(text, at, end) is None:
+        return False
+    by_hand = _TYPED.search(text) is not None or _TYPED_AROUND_INTEGRALS.search(text) is not None
+    return name == "W" or not by_hand
 
 
 def refuse_open_e(text: str, column: int) -> None:

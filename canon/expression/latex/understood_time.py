@@ -20,12 +20,18 @@ def without_time(items: tuple[Piece, ...], scope: Scope) -> tuple[Piece, ...]:
     for item in items:
         base, exponent = (item.base, item.exponent) if isinstance(item, Powered) else (item, None)
         before = found[-1] if found else None
-        name = before.base if isinstance(before, Powered) and exponent is None else before
+        name = _what_is_raised(before) if isinstance(before, Powered) and exponent is None else before
         if not (isinstance(name, Name) and is_time(base, scope) and _takes_time(name, scope)):
             found.append(item)
         elif exponent is not None:
             found[-1] = Powered(name, exponent, name.column)
     return tuple(found)
+
+
+def _what_is_raised(power: Powered) -> Piece:
+    r"""Return the base of a power without its braces or brackets, ``\left(\dot x\right)^2``."""
+    base = unbraced(power.base)
+    return unbraced(base.inner) if isinstance(base, Group) else base
 
 
 def _takes_time(name: Name, scope: Scope) -> bool:

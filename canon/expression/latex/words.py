@@ -32,7 +32,7 @@ from canon.expression.latex.printed_forms import (
     OTHERWISE,
     PARTIAL,
     PLAIN,
-    PRINTED_CALL,
+    is_printed_call,
 )
 from canon.expression.latex.scripts import Scripts, accented, braced_name, dots_above, scripts, upright
 from canon.expression.latex.word_list import Word, WordList, Words, together
@@ -168,7 +168,7 @@ class _Reader:
             self.put(self.names.run(run, column, (), 0, powered=False), column)
             return
         self.at += len(run)
-        special = run in OF_SPECIAL_FUNCTIONS and PRINTED_CALL.match(self.text, self.at, self.end)
+        special = is_printed_call(run, self.text, self.at, self.end)
         if special and not self.names.declares(run):
             self.put([Function(OF_SPECIAL_FUNCTIONS[run], column)], column)
             return

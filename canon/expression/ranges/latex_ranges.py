@@ -117,6 +117,9 @@ def _argument(text: str, at: int, end: int) -> tuple[int, int, int]:
                 return at + 1, i, i + 1
     token = re.compile(r"\\[A-Za-z]+|[-+]?\w").match(text, at, end)
     stop = token.end() if token else at
+    if token and token.group()[-1].isdigit() and re.match(r"\d|\\pi(?![A-Za-z])|π", text[stop:end]):
+        reason = "a limit of more than one figure or letter stands in braces"
+        raise LanguageError(text, at + 1, reason, "write ^{10}, or put a blank behind the limit")
     return at, stop, stop
 
 

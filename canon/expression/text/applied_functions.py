@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from canon.expression.text.declared_names import function_name
 from canon.expression.text.differentials import PARTIAL, PRIMED
+from canon.expression.text.open_readings import is_angle_of_functions
 from canon.expression.text.syntax import (
     Call,
     Comparison,
@@ -23,6 +24,7 @@ from canon.expression.text.syntax import (
     Product,
     Sum,
     Tuple,
+    parts,
 )
 from canon.expression.text.vocabulary import WHICH_E
 
@@ -125,6 +127,11 @@ def _raised(reader: FactorParser, node: Node, exponent: Node | None, name: str) 
 def _called(reader: FactorParser, token: Token, name: str, opening: Token) -> Node:
     """Return a function whose arguments stand in brackets; Mathematica's have some of theirs the other way round."""
     arguments = with_brackets(reader)
+    if opening.text == "(" and token.text.startswith(("Elliptic", "Jacobi")):
+        what = (
+            f"is {token.text}( ) Mathematica's, of the parameter m, or Maple's, of the modulus k with m = k²?"
+        )
+        raise reader.fault(what, f"write {name}( ), which is of the parameter m", token)
     if opening.text == "[" and len(arguments) == 2 and name in ("atan", "log"):
         return Call("atan2" if name == "atan" else "log", arguments[::-1], token.column)
     if token.text in ("ArcTan", "arctan") and len(arguments) == 2:
@@ -209,7 +216,10 @@ def _still(reader: FactorParser, first: Token, name: str, taken: list[Node]) -> 
         return False
     word = token.tight and token.kind == "name" and not first.tight
     clock = token.kind == "name" and token.text == reader.scope.time.name
-    if word or clock:
+    angle = isinstance(last, Name) and is_angle_of_functions(
+        last.text
+    )  # v cos α t is v t cos α, or v cos(α t)
+    if word or (clock and not angle):
         return True
     raise reader.fault(
         f"does this factor still belong to the argument of {name}?",
@@ -228,12 +238,27 @@ def _exponential(reader: FactorParser, token: Token) -> Node | None:
         inside = reader.exponent(sign)
         reader.depth -= 1
         bracketed = reader.tokens[reader.at - 1].text in (")", "}", "]")
-        if reader.starts(reader.token) and reader.token.tight and not bracketed:
+        tight = reader.starts(reader.token) and reader.token.tight
+        if not bracketed and (tight or _goes_on_with_what_moves(reader, inside)):
             raise reader.fault("does this still belong to the exponent?", "write brackets, e^(a*t)")
         return _raised_e(reader, token, inside)
     if token.text == "e":
         raise reader.fault(WHICH_E, "write exp(1) for the number; a name is declared", token)
     return Call("exp", (Number(1, 1, token.column),), token.column) if token.text == "%e" else None
+
+
+def _goes_on_with_what_moves(reader: FactorParser, exponent: Node) -> bool:
+    """Tell whether a constant exponent may go on behind a blank, as in ``e^-γ t`` and ``e^i ω t``."""
+    names = [part.text for part in parts(exponent) if isinstance(part, Name)]
+    following = reader.token
+    programs = _OF_MATHEMATICA.search(reader.text) is not None
+    if programs or not names or any(map(reader.scope.moves, names)):
+        return False
+    if following.kind != "name" or following.primes:
+        return False
+    turns = [name for name in names if not reader.scope.declares(name)] in (["i"], ["I"], ["j"])
+    behind = reader.tokens[reader.at + 1] if turns else following
+    return reader.scope.moves(following.text) or (behind.kind == "name" and reader.scope.moves(behind.text))
 
 
 def _raised_e(reader: FactorParser, token: Token, exponent: Node) -> Node:

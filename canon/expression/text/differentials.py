@@ -95,10 +95,17 @@ def _below(reader: FactorParser, sign: str) -> list[tuple[Node, int]]:
 
 def _after(reader: FactorParser, token: Token, sign: str) -> Node:
     """Return what stands after ``d/dt``: a bracket, or one name alone."""
+    what = "d/dt" if sign == "d" else "∂/∂x"
     opening = reader.token
     if opening.text in ("(", "[", "{"):
         reader.at += 1
-        return reader.group(opening)
+        inside = reader.group(opening)
+        if reader.token.text in ("^", "**") or reader.token.kind == "super":
+            raise reader.fault(
+                f"does this raise the derivative, or what {what} acts on?",
+                f"write ({what}( ))^2 or {what}(( )^2)",
+            )
+        return inside
     if opening.text == "∂" or (opening.kind == "name" and opening.text != "d"):
         node = reader.atom()
         if (
@@ -107,7 +114,6 @@ def _after(reader: FactorParser, token: Token, sign: str) -> Node:
             and reader.token.kind != "super"
         ):
             return node
-    what = "d/dt" if sign == "d" else "∂/∂x"
     raise reader.fault(f"what does {what} reach?", f"write {what}( ) around it", token)
 
 

@@ -139,9 +139,17 @@ class Reader(FactorParser):
                 "does this factor still belong to the argument?", "write sin(x)*(y) or sin(x*(y))"
             )
         factor = self.power()
-        if token.text in CLOSING and last.kind == "name":
-            self.no_value(token, last, factor.base if isinstance(factor, Power) else factor)
+        name = last if last.kind == "name" else self.raised_name(before, token)
+        if token.text in CLOSING and name is not None:
+            self.no_value(token, name, factor.base if isinstance(factor, Power) else factor)
         return factor
+
+    def raised_name(self, before: Node, opening: Token) -> Token | None:
+        """Return the name whose power a bracket stands tight behind, as in ``x²(0)``; None where it is none."""
+        power = before.operand if isinstance(before, Negative) else before
+        if not (opening.tight and isinstance(power, Power) and isinstance(power.base, Name)):
+            return None
+        return next((token for token in self.tokens if token.column == power.base.column), None)
 
     def may_be_raised(self, before: Node, last: Token) -> bool:
         """Tell whether what follows a power may still belong to its exponent, ``x^2y``."""
@@ -188,15 +196,38 @@ class Reader(FactorParser):
             raise self.fault("does this raise the function or its argument?", "write sin(x)**2 or sin(x**2)")
         if token.kind == "super":
             self.at += 1
-            return self.to_the(base, self.raised(token), token)
+            return self.of_its_argument(self.to_the(base, self.raised(token), token), self.tokens[start])
         if sign := self.take("**", "^"):
             self.deeper(sign)
             node = self.to_the(base, self.exponent(sign), sign)
             self.depth -= 1
-            return node
+            by_hand = isinstance(node.exponent, Number) and sign.text == "^"
+            return self.of_its_argument(node, self.tokens[start]) if by_hand else node
         return base
 
-    def to_the(self, base: Node, exponent: Node, sign: Token) -> Node:
+    def of_its_argument(self, power: Power, first: Token) -> Power:
+        """Return a power whose base has its argument behind the exponent: ``ẋ²(t)``, ``V²(x)``, not ``V²(a)``."""
+        opening, base = self.token, power.base
+        if not (opening.text in ("(", "[") and opening.tight and self.tokens[self.at - 1] is not first):
+            return power
+        if isinstance(base, Name) and self.scope.declares(base.text):
+            if self.at_time(first):
+                self.at += 3
+            return power
+        if first.text not in self.scope.functions or not isinstance(base, Name | Call):
+            return power
+        if isinstance(base, Call) and base.function != PARTIAL:  # V(x)²(…) has its argument
+            return power
+        variables = self.scope.functions[first.text]
+        arguments = with_brackets(self)
+        if [part.text if isinstance(part, Name) else "" for part in arguments] != [*variables]:
+            raise self.fault(
+                f"is {first.text} taken of this, or multiplied by it?", _PRODUCT_OR_VALUE, opening
+            )
+        whole = Call(base.text, arguments, base.column) if isinstance(base, Name) else base
+        return Power(whole, power.exponent, power.column)
+
+    def to_the(self, base: Node, exponent: Node, sign: Token) -> Power:
         """Return a power; code says ``e**t`` of what is declared, by hand it may be Euler's number."""
         if sign.text != "**" and looks_like_eulers(base, exponent, self.scope):
             raise self.fault(*DECLARED_E, sign)
@@ -322,7 +353,8 @@ class Reader(FactorParser):
         """Return the exact value of a decimal, of one in degrees as well."""
         letter = token.text.lower().find("e")
         ending = token.text[letter:]
-        if letter > 0 and (self.scope.declares(ending) or self.scope.declares(ending[0])):
+        spelled = ending.isalnum() and self.words.declared(ending)  # E0 is a spelling of E_0
+        if letter > 0 and (spelled or self.scope.declares(ending[0])):
             raise LanguageError(
                 self.text,
                 token.column,

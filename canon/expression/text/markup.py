@@ -26,6 +26,12 @@ _BREAK = re.compile(r"<br ?/?>|</(?:p|div|li|tr)>", re.IGNORECASE)
 _TAG = re.compile(
     r"</?(?:p|div|span|i|em|b|strong|var|code|pre|tt|li|ul|ol|font|u|small)(?: [^<>]{0,200})?>", re.IGNORECASE
 )
+_STYLED = re.compile(
+    r"<[a-z]{1,10} [^<>]{0,120}?((?:text-decoration[\w-]{0,20}\s{0,3}:[^;\"'<>]{0,40}(?:overline|line-through))"
+    r"|vertical-align\s{0,3}:\s{0,3}(?:super|sub|-?[.\d]))",
+    re.IGNORECASE,
+)
+"""A line over a radicand or through a term, and letters that are raised, by a style."""
 _DRAWN = re.compile(
     r"[─━│⎛⎜⎝⎞⎟⎠⎡⎢⎣⎤⎥⎦⎧⎨⎩⌠⌡╲╱]|(?<=\n)[ \t]{0,99}-{1,99}[ \t]{0,99}(?=\n)|_{3}|^\[ +\]$|^[ ]+\d[\d ]*(?=\n *\S)",
     re.MULTILINE,
@@ -66,6 +72,8 @@ _DECIMAL_COMMA = re.compile(
 )
 """``9,81``; ``1,000`` may be a thousand, and what is in brackets a list."""
 _BRACED_COMMA = re.compile(r"(?<![0-9])([0-9]{1,12})\{,\}(?=[0-9])")
+_BRACED_THOUSAND = re.compile(r"(?<![\w.,])[1-9][0-9]{0,3}\{,\}[0-9]{3}(?![0-9])")
+"""``1{,}000``: LaTeX keeps the blank away behind both kinds of comma."""
 _MAPLE = re.compile(r"(?:\[\s?)?(?<=[\s,\[])([a-z])\s?\$\s?([1-4])(\s?\])?(?=\s?\))")
 """Maple's ``t$2`` and ``[t$2]``."""
 _FENCE = re.compile(r"^\s*```[a-z]{0,12}\n(.*?)\n?```\s*$", re.DOTALL)
@@ -77,7 +85,8 @@ def unmarked(text: str) -> str:
     Raises
     ------
     LanguageError
-        Where it is a drawing over several lines, whose rows mean nothing one by one.
+        Where it is a drawing over several lines, whose rows mean nothing one by one, or where a braced comma may be
+        that of a decimal or of a thousand.
 
     Examples
     --------
@@ -105,12 +114,15 @@ def unmarked(text: str) -> str:
         reason = "this is a drawing of the formula over several lines, as SymPy's pprint makes it"
         raise LanguageError(text, drawn.start() + 1, reason, "write what print(…) or latex(…) of it shows")
     if _MATHML.search(text):
-        reader = _MathML()
+        reader = _MathML(text)
         reader.feed(text)
         return reader.text()
     if _HTML.search(text):
         text = _FRACTION.sub(r"(\1/\2)", _ENTITY.sub(lambda found: html.unescape(found.group()), text))
         text = _BREAK.sub("\n", _SUP.sub(r"^(\1)", _SUB.sub(r"_\1", text)))
+        if styled := _STYLED.search(text):
+            shown = f"{styled[1]} of a tag changes what the formula says"
+            raise LanguageError(text, styled.start() + 1, shown, "write sqrt( ) and ^ without styles")
         text = _WIDTHLESS.sub("", html.unescape(_TAG.sub("", text))).strip()
     return _without_markdown(text)
 
@@ -173,7 +185,13 @@ def _have_a_bracket(above: str, below: str) -> bool:
 
 def _with_points(text: str) -> str:
     """Return a text with points in place of decimal commas outside brackets, as long as it was."""
-    text = _BRACED_COMMA.sub(r"  \1.", text) if "{,}" in text else text
+    if "{,}" in text:
+        if found := _BRACED_THOUSAND.search(text):
+            shown = found.group()
+            reason = f"is {shown} a decimal, or are its figures set apart in threes?"
+            remedy = f"write {shown.replace('{,}', '.')} or {shown.replace('{,}', '')}"
+            raise LanguageError(text, found.start() + 1, reason, remedy)
+        text = _BRACED_COMMA.sub(r"  \1.", text)
     commas = [found.start() + found.group().index(",") for found in _DECIMAL_COMMA.finditer(text)]
     if commas:
         steps = ((c in "([{") - (c in ")]}") for c in text)
@@ -217,21 +235,45 @@ class _Element:
     """An element of MathML with the plain text of what is inside."""
 
     tag: str
+    kind: str
+    """The tag of what is shown in the same way."""
     inside: list[str] = field(default_factory=list[str])
 
 
 class _MathML(HTMLParser):
     """Reads presentation MathML into plain text; what is nested deeper than anyone writes is left out."""
 
-    def __init__(self) -> None:
+    def __init__(self, source: str) -> None:
         super().__init__(convert_charrefs=True)
-        self.open = [_Element("math")]
+        self.source = source
+        self.open = [_Element("math", "math")]
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Open an element."""
-        del attrs
+        """Open an element; what its marks say of the formula is kept, or refused.
+
+        Raises
+        ------
+        LanguageError
+            For strokes through a formula, binomials, and brackets other than moduli.
+        """
+        marks = {name: value or "" for name, value in attrs}
+        fences = marks.get("open", "("), marks.get("close", ")")
+        kind = tag
+        if tag == "mfenced" and fences in (("|", "|"), ("∣", "∣")):
+            kind = "modulus"
+        elif tag == "menclose" and marks.get("notation") == "radical":
+            kind = "msqrt"
+        elif (
+            tag == "menclose"
+            or re.fullmatch(r"0+(?:\.0*)?[a-z]*", marks.get("linethickness", ""))
+            or (tag == "mfenced" and fences not in _FENCES)
+        ):
+            shown = " ".join(marks.values())[:30]
+            raise LanguageError(
+                self.source, 1, f"<{tag}> with {shown!r} is not read", "write the formula in LaTeX"
+            )
         if len(self.open) < MAX_NESTING:
-            self.open.append(_Element(tag))
+            self.open.append(_Element(tag, kind))
 
     def handle_endtag(self, tag: str) -> None:
         """Close an element, and whatever was left open in it."""
@@ -253,6 +295,7 @@ class _MathML(HTMLParser):
         return _joined(self.open[0].inside)
 
 
+_FENCES = (("(", ")"), ("[", "]"), ("{", "}"))
 _SIGNS = {"\u2062": " ", "\u2061": " ", "\u2063": ",", "−": "-", "⋅": "*", "·": "*", "×": "*"}
 _ACCENTS = {"˙": "'", "\u0307": "'", ".": "'", "¨": "''", "\u0308": "''", "..": "''"}
 
@@ -260,7 +303,7 @@ _ACCENTS = {"˙": "'", "\u0307": "'", ".": "'", "¨": "''", "\u0308": "''", ".."
 def _shown(element: _Element) -> str:
     """Return what an element shows, as plain text."""
     inside = element.inside
-    match element.tag, inside:
+    match element.kind, inside:
         case "mfrac", [above, below]:
             if re.match(r"[d∂](?:\^\(\d\))?(?: |$)", above) and re.match(r"[d∂] ", below):
                 return f"{above}/{below.replace(' ', '')}"
@@ -278,6 +321,8 @@ def _shown(element: _Element) -> str:
             return f"sqrt({_joined(inside)})"
         case "mroot", [base, index]:
             return f"({base})^(1/({index}))"
+        case "modulus", _:
+            return f"Abs({_joined(inside)})"
         case "mfenced", _:
             return f"({', '.join(inside)})"
         case "mo", [sign]:

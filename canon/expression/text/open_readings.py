@@ -12,10 +12,20 @@ from canon.expression.text.syntax import Name, Node, parts
 if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
 
-__all__ = ["DECLARED_E", "counts", "is_angle", "looks_like_eulers", "prime_in_doubt", "stem_of"]
+__all__ = [
+    "DECLARED_E",
+    "counts",
+    "is_angle",
+    "is_angle_of_functions",
+    "looks_like_eulers",
+    "prime_in_doubt",
+    "stem_of",
+]
 
 _ANGLES = ("theta", "vartheta", "phi", "varphi", "psi", "th", "ph")
 """Letters that are angles in any book."""
+_ANGLES_OF_FUNCTIONS = (*_ANGLES, "alpha", "beta", "gamma", "delta", "epsilon", "chi", "eta")
+"""Letters that are angles wherever a function is taken of them alone."""
 _COUNTS = ("n", "N", "k", "i", "j")
 """Letters that count, so that an angle is divided by them."""
 DECLARED_E = (
@@ -34,6 +44,17 @@ def is_angle(name: str) -> bool:
     (True, True, False)
     """
     return stem_of(name) in _ANGLES
+
+
+def is_angle_of_functions(name: str) -> bool:
+    """Tell whether a name is that of an angle where a function is taken of it, ``sin α``.
+
+    Examples
+    --------
+    >>> is_angle_of_functions("alpha"), is_angle_of_functions("omega")
+    (True, False)
+    """
+    return stem_of(name) in _ANGLES_OF_FUNCTIONS
 
 
 def counts(name: str) -> bool:

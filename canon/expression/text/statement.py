@@ -160,7 +160,7 @@ def _depths(text: str) -> list[int] | None:
 
 def _parts(text: str, depths: list[int], signs: list[int]) -> list[tuple[int, int]]:
     """Return where each statement begins and ends; a comma ends one where an equation stands on both sides of it."""
-    ends = [m for m in _ENDS.finditer(text) if depths[m.start()] == 0]
+    ends = [m for m in _ENDS.finditer(text) if depths[m.start()] == 0 and not _goes_on(text, m)]
     parts: list[tuple[int, int]] = []
     start = 0
     for stop, after in [*((m.start(), m.end()) for m in ends), (len(text), len(text))]:
@@ -176,6 +176,23 @@ def _parts(text: str, depths: list[int], signs: list[int]) -> list[tuple[int, in
         parts.append((start, stop))
         start = after
     return parts
+
+
+def _goes_on(text: str, end: re.Match[str]) -> bool:
+    """Tell whether a row goes on with the next one, which begins with ``=`` or a sign, or this one ends with one.
+
+    A row with ``-`` before it that is an equation as the one before it, or as little, stands for itself.
+    """
+    if end.group() != "\n":
+        return False
+    before = re.split(r"[;\n]", text[: end.start()])[-1].strip()
+    after = re.split(r"[;\n]", text[end.end() :], maxsplit=1)[0].strip()
+    if not before or not after:
+        return False
+    if re.search(r"(?<![<>!])[-=+−*/·×]$", before) or re.match(r"=(?![=>])", after):
+        return True
+    equations = [_EQUALS.search(row) is not None for row in (before, after)]
+    return not all(equations) and (after[0] == "+" or (after[0] in "-−" and any(equations)))
 
 
 def _definition_behind(text: str, depths: list[int], start: int, sign: int) -> int:

@@ -116,11 +116,11 @@ GREEK = {
     "ϑ": "theta", "ι": "iota", "κ": "kappa", "λ": "lambda", "μ": "mu", "ν": "nu", "ξ": "xi", "π": "pi", "ρ": "rho",
     "σ": "sigma", "τ": "tau", "υ": "upsilon", "φ": "phi", "ϕ": "phi", "χ": "chi", "ψ": "psi", "ω": "omega",
     "Γ": "Gamma", "Δ": "Delta", "Θ": "Theta", "Λ": "Lambda", "Ξ": "Xi", "Π": "Pi", "Σ": "Sigma", "Υ": "Upsilon",
-    "Φ": "Phi", "Ψ": "Psi", "Ω": "Omega",
+    "Φ": "Phi", "Ψ": "Psi", "Ω": "Omega", "ϖ": "varpi",
 }  # fmt: skip
 _ALIKE = {"−": "-", "–": "-", "·": "*", "×": "*", "⋅": "*", "∙": "*", "•": "*", "∗": "*", "÷": "/", "∕": "/",
           "⁄": "/", "≤": "<=", "≥": ">=", "≠": "!=", ":=": "="}  # fmt: skip
-_LETTERS = {**GREEK, "ℓ": "ell", "ℏ": "hbar", "ħ": "hbar", "ϵ": "epsilon", "ϱ": "rho", "ϖ": "pi", "ς": "sigma",
+_LETTERS = {**GREEK, "ℓ": "ell", "ℏ": "hbar", "ħ": "hbar", "ϵ": "epsilon", "ϱ": "rho", "ς": "sigma",
             "µ": "mu", "∆": "Delta", "Ω": "Omega", "ℋ": "H", "ℒ": "L", "ℛ": "R", "ℱ": "F", "ℰ": "E", "ℳ": "M",
             "ı": "i", "ⅇ": "e", "ⅆ": "d", "ⅈ": "I"}  # fmt: skip
 _NOT_HERE = {

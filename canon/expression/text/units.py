@@ -70,7 +70,8 @@ def units(text: str, scope: Scope) -> tuple[Unit, ...]:
     Raises
     ------
     LanguageError
-        Where square brackets after a number hold something else than a unit of the SI without prefix.
+        Where square brackets after a number hold something else than a unit of the SI without prefix, or declared
+        names alone, which may be a factor.
 
     Examples
     --------
@@ -98,6 +99,10 @@ def _units(text: str, scope: Scope) -> Iterator[Unit]:
             if not _INSIDE.fullmatch(found.group(1)):
                 reason = f"{found.group(1)[:40]!r} is not a unit that can be passed over"
                 raise LanguageError(text, found.start(1) + 1, reason, _REMEDY)
+            if all(_is_declared(letter, scope) for letter in _LETTERS.findall(found.group(1))):
+                reason = f"is [{found.group(1).strip()}] a unit, or a factor?"
+                remedy = "leave the unit out, or write ( ) around a factor"
+                raise LanguageError(text, found.start(1) + 1, reason, remedy)
             yield Unit(found.group(1).strip(), at, found.end())
         elif (bare := _bare(text, number, scope)) is not None:
             yield Unit(bare.group().strip(), at, bare.end())
@@ -107,6 +112,8 @@ def _bare(text: str, number: re.Match[str], scope: Scope) -> re.Match[str] | Non
     """Return a unit without brackets: no factor stands beside it, and none of its letters could be one."""
     bare = None if scope.implicit else _BARE.match(text, number.end())
     if bare is None or _FACTOR.match(text, bare.end()):
+        return None
+    if any(_is_bound(name, text) for name in _LETTERS.findall(bare.group())):
         return None
     taken = _declares(bare.group(), scope) and not _is_acceleration(bare.group(), text, number, scope)
     return None if taken else bare
@@ -127,8 +134,16 @@ def _is_acceleration(unit: str, text: str, number: re.Match[str], scope: Scope) 
 
 def _declares(unit: str, scope: Scope) -> bool:
     """Whether any letter of a unit is a declared name, so that it could be meant instead."""
-    names = _LETTERS.findall(unit)
-    return any(name in scope.functions or scope.symbol(name) is not None for name in names)
+    return any(_is_declared(name, scope) for name in _LETTERS.findall(unit))
+
+
+def _is_declared(name: str, scope: Scope) -> bool:
+    return name in scope.functions or scope.symbol(name) is not None
+
+
+def _is_bound(name: str, text: str) -> bool:
+    """Whether a letter is the variable of an integral or a sum in the text."""
+    return re.search(rf"[(,]\s*{name}\s*,", text) is not None
 
 
 def is_a_unit(text: str) -> bool:

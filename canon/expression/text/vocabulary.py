@@ -26,23 +26,23 @@ MAX_CHOICES = 16
 """Most arguments of Max and Min and most pieces of Piecewise: SymPy compares them pairwise."""
 
 
-def _acot(x: Expr) -> Expr:
+def _acot(x: Expr, *, evaluate: bool = True) -> Expr:
     """Return acot x as it was written: SymPy makes acot(−x) to −acot x, which is wrong at x = 0, where acot is π/2."""
     extracted = bool(x.free_symbols) and x.could_extract_minus_sign()
-    return sp.acot(x, evaluate=False) if extracted else sp.acot(x)
+    return sp.acot(x, evaluate=evaluate and not extracted)
 
 
-def _sech(x: Expr) -> Expr:
+def _sech(x: Expr, *, evaluate: bool = True) -> Expr:
     """Return sech x as 1/cosh x, which every room knows."""
-    return 1 / sp.cosh(x)
+    return sp.Pow(sp.cosh(x, evaluate=evaluate), -1, evaluate=evaluate)
 
 
-def _csch(x: Expr) -> Expr:
-    return 1 / sp.sinh(x)
+def _csch(x: Expr, *, evaluate: bool = True) -> Expr:
+    return sp.Pow(sp.sinh(x, evaluate=evaluate), -1, evaluate=evaluate)
 
 
-def _coth(x: Expr) -> Expr:
-    return 1 / sp.tanh(x)
+def _coth(x: Expr, *, evaluate: bool = True) -> Expr:
+    return sp.Pow(sp.tanh(x, evaluate=evaluate), -1, evaluate=evaluate)
 
 
 def _elliptic_pi(*arguments: Expr, evaluate: bool = True) -> Expr:

@@ -25,6 +25,7 @@ from canon.expression.text.declared_names import key_of
 from canon.expression.text.scope import split
 from canon.expression.text.syntax import Call, Name, parts
 from canon.expression.text.tokens import GREEK
+from canon.expression.text.units import units
 from canon.expression.text.vocabulary import CONSTANTS, OTHER_NAMES
 
 if TYPE_CHECKING:
@@ -109,12 +110,19 @@ def _apart(
         found = False
         for statement in sorted(kept, key=_turn):
             definition = _definition(statement, _with_names(scope, defined), is_asked)
-            if definition is not None:
+            if definition is not None and not _holds_a_later_one(statement, kept, scope):
                 defined.append(definition)
                 kept.remove(statement)
                 found = True
                 break
     return defined, kept
+
+
+def _holds_a_later_one(statement: Statement, kept: Sequence[Statement], scope: Scope) -> bool:
+    """Tell whether what looks like a unit is a name that is defined later: ``c = 2 s, s = k/m``."""
+    later = {_said(other.sides[0]) for other in kept if other is not statement and len(other.sides) > 1}
+    found = [unit for side in statement.sides[1:] if later for unit in units(side.text, scope)]
+    return any(unit.text in later for unit in found)
 
 
 def _turn(statement: Statement) -> tuple[bool, bool]:
