@@ -3,7 +3,7 @@ angles, and parameters that are called as canon calls its own symbols."""
 
 import pytest
 
-from canon.exercise.claim_verdict import judge
+from canon.exercise.claim_verdict import InvalidClaim, judge
 from canon.exercise.sheet.sheet import Claim
 
 BUDGET = 60.0
@@ -92,3 +92,13 @@ def test_a_parameter_is_no_function_of_the_slow_time(J, due):
 def test_a_field_may_be_called_as_the_energy_is(J, due):
     keys = {"q": ["q"], "p": ["p"], "parameters": {"E_0": "positive"}}
     assert said("action-angle", **keys, H="E_0*(p**2 + q**2)/2", J=[J]) == due
+
+
+@pytest.mark.parametrize(("place", "due"), [("x", "holds"), ("2*x", "fails"), ("x + x_dot", "invalid")])
+def test_a_position_in_the_energy_of_accelerations_holds_no_velocity(place, due):
+    keys = {"q": ["x"], "parameters": {"m": "positive"}, "bodies": [{"m": "m", "r": [place]}]}
+    if due == "invalid":
+        with pytest.raises(InvalidClaim, match="position depends on coordinates and time only"):
+            said("gibbs-appell", **keys, S="m*x_ddot**2/2")
+        return
+    assert said("gibbs-appell", **keys, S="m*x_ddot**2/2") == due

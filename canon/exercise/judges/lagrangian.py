@@ -18,7 +18,7 @@ from canon.exercise.question.answer import stay_open
 from canon.exercise.question.answer_values import what_may_vanish, without_value_on
 from canon.exercise.question.continuous_answer import is_continuous
 from canon.exercise.question.deadline import PROOF_SECONDS
-from canon.exercise.question.given_bodies import given_bodies
+from canon.exercise.question.given_bodies import check_real, given_bodies
 from canon.exercise.question.jumping_system import check_absent, check_gauge_term
 from canon.exercise.question.question import (
     Determines,
@@ -386,8 +386,11 @@ def appell_system(reading: Reading) -> GibbsAppell:
         reading.fault("q_dot", "missing; say what each velocity is in terms of the quasi-velocities")
     if reading.has("q_dot") and not reading.has("quasi"):
         reading.fault("quasi", "missing; name the quasi-velocities in which q_dot is given")
+    bodies = list(given_bodies(reading))
+    for where, body in bodies:
+        check_real(reading, f"{where}.r", body.r)
     return GibbsAppell(
-        tuple(body for _, body in given_bodies(reading)),
+        tuple(body for _, body in bodies),
         reading.symbols("q"),
         reading.expression("V", sp.S.Zero),
         reading.symbols("quasi") if reading.has("quasi") else None,
