@@ -4,7 +4,8 @@ angles, and parameters that are called as canon calls its own symbols."""
 import pytest
 
 from canon.exercise.claim_verdict import InvalidClaim, judge
-from canon.exercise.sheet.sheet import Claim
+from canon.exercise.explained_judgement import judgements
+from canon.exercise.sheet.sheet import Claim, claim_from
 
 BUDGET = 60.0
 """Seconds for a claim: that a busy machine is slow is no question here."""
@@ -102,3 +103,19 @@ def test_a_position_in_the_energy_of_accelerations_holds_no_velocity(place, due)
             said("gibbs-appell", **keys, S="m*x_ddot**2/2")
         return
     assert said("gibbs-appell", **keys, S="m*x_ddot**2/2") == due
+
+
+def test_the_multipliers_of_constraints_on_velocities_are_told_by_their_own_convention():
+    keys = {"q": ["x", "y"], "L": "(x_dot**2 + y_dot**2)/2", "constraints": ["y_dot - t*x_dot"]}
+    answer = {"multipliers": ["lam"], "claim": ["x_ddot - t*lam", "y_ddot + lam"]}
+    claim = claim_from({"id": "a", "kind": "nonholonomic", "budget": 20, **keys, **answer})
+    *_, (judgement, _) = judgements(claim)
+    assert judgement.feedback.endswith("Σ λ ∂g/∂q̇")
+
+
+def test_a_factor_that_holds_the_time_makes_no_constraint_rheonomic():
+    keys = {"q": ["x", "y"], "constraints": ["exp(t)*(x - y) = 0"]}
+    assert said("constraint-class", **keys, **{"class": ["rheonomic"]}) == "fails"
+    assert said("constraint-class", **keys, **{"class": ["scleronomic"]}) == "holds"
+    verdict = judge(Claim("a", "constraint-class", keys | {"class": ["rheonomic"]}, budget=BUDGET))
+    assert "what is allowed does not depend on the time" in verdict.feedback
