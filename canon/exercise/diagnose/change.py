@@ -52,6 +52,7 @@ class Mistake(enum.Enum):
     TIME_DERIVATIVE_MISSING = enum.auto()
     TIME_DERIVATIVE_SIGN = enum.auto()
     MULTIPLIERS_OPPOSITE = enum.auto()  # the multipliers
+    REACTIONS_OPPOSITE = enum.auto()  # the multipliers of constraints on velocities
     RULE_OPPOSITE = enum.auto()  # the rules
     NEW_FOR_OLD = enum.auto()  # the new variables
     OPPOSITE_CONVENTION = enum.auto()  # the convention here

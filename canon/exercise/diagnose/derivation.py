@@ -44,7 +44,9 @@ def multipliers(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     trial = reading
     for key, f in changed.items():
         trial = trial.with_instead(key, f)
-    yield Diagnosis((Change.of(Mistake.MULTIPLIERS_OPPOSITE, tuple(opposite)),), trial)
+    on_velocities = reading.claim.kind == "nonholonomic"
+    mistake = Mistake.REACTIONS_OPPOSITE if on_velocities else Mistake.MULTIPLIERS_OPPOSITE
+    yield Diagnosis((Change.of(mistake, tuple(opposite)),), trial)
 
 
 def total_derivative(wrong: WrongAnswer) -> Iterator[Diagnosis]:

@@ -195,7 +195,7 @@ def _why(right: str, constraints: ConstraintSystem) -> str:
         case "nonholonomic":
             return "nonholonomic: the constraint on the velocities is not integrable"
         case "scleronomic":
-            return "scleronomic: the time does not occur explicitly"
+            return "scleronomic: what is allowed does not depend on the time"
         case "rheonomic":
             return "rheonomic: the time occurs explicitly"
         case "unilateral":

@@ -17,7 +17,8 @@ from sympy import Expr, Symbol
 from canon.exercise.question.answer import stay_open
 from canon.exercise.question.answer_values import what_may_vanish, without_value_on
 from canon.exercise.question.continuous_answer import is_continuous
-from canon.exercise.question.given_bodies import given_bodies
+from canon.exercise.question.deadline import PROOF_SECONDS
+from canon.exercise.question.given_bodies import check_real, given_bodies
 from canon.exercise.question.jumping_system import check_absent, check_gauge_term
 from canon.exercise.question.question import (
     Determines,
@@ -40,6 +41,7 @@ from canon.mechanics.lagrange.hidden_constraints import all_motions, motions_of
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.reduction.routh import routhian as routh
 from canon.proof.continuity.smooth import PIECED
+from canon.proof.continuity.turns_of_angles import continuity_but_for_turns
 from canon.proof.domain.domain import Domain
 from canon.proof.domain.verdict import Undecided
 from canon.proof.kinks import vanishes_off_kinks
@@ -182,7 +184,8 @@ def lagrangian_equivalence(reading: Reading) -> Iterator[Question]:
         if F.has(*(acceleration(x) for x in q)):
             reading.fault("F", "should depend on coordinates, velocities and time only")
         yield Same((Part("dF/dt", time_derivative(F, q, t), second - first),), reading.domain)
-        yield is_continuous(F, (*q, t), reading.domain, "F")
+        # At the cut of an angle F may step by a number, which makes no difference; t θ steps by another at each time.
+        yield continuity_but_for_turns(F, (*q, t), reading.domain, PROOF_SECONDS, "F")
     else:
         yield from _is_affine_in_velocities(second - first, q, reading.domain)
         yield Same(tuple(_total_derivative_conditions(second - first, q, t)), reading.domain)
@@ -383,8 +386,11 @@ def appell_system(reading: Reading) -> GibbsAppell:
         reading.fault("q_dot", "missing; say what each velocity is in terms of the quasi-velocities")
     if reading.has("q_dot") and not reading.has("quasi"):
         reading.fault("quasi", "missing; name the quasi-velocities in which q_dot is given")
+    bodies = list(given_bodies(reading))
+    for where, body in bodies:
+        check_real(reading, f"{where}.r", body.r)
     return GibbsAppell(
-        tuple(body for _, body in given_bodies(reading)),
+        tuple(body for _, body in bodies),
         reading.symbols("q"),
         reading.expression("V", sp.S.Zero),
         reading.symbols("quasi") if reading.has("quasi") else None,

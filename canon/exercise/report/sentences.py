@@ -144,6 +144,10 @@ SENTENCES: Mapping[Mistake, Pattern] = MappingProxyType(
             f"right with the opposite sign of {_listed(names)}; the convention here is "
             "d/dt ∂L/∂q̇ − ∂L/∂q = Σ λ ∂f/∂q"
         ),
+        Mistake.REACTIONS_OPPOSITE: lambda names: (
+            f"right with the opposite sign of {_listed(names)}; the convention here is "
+            "d/dt ∂L/∂q̇ − ∂L/∂q = Σ λ ∂g/∂q̇"
+        ),
         Mistake.RULE_OPPOSITE: lambda rules: (
             f"right under the opposite sign of a rule: here {' and '.join(map(str, rules))}"
         ),

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 
+from canon.expression.text.open_readings import is_angle
 from canon.mechanics.algebra.substitution import substitute, symbols_of
 from canon.proof.analytic import proved_sign
 from canon.proof.continuity.continuity import continuity
@@ -22,6 +23,7 @@ from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precisio
 from canon.proof.domain.domain import Domain, conditions_hold
 from canon.proof.domain.verdict import Counterexample, Evidence, Status, Verdict
 from canon.proof.rungs.ladder import is_empty
+from canon.proof.trees.affine_form import is_affine
 from canon.proof.trees.sympy_types import arguments, free_symbols
 from canon.proof.vanish import vanishes
 
@@ -128,6 +130,8 @@ def motion_is_continuous(
         rest, turns = _without_turns(place, x, domain, laws, t)
         verdict = continuity(rest, [t], domain, name=f"{x} = {place}")
         yield replace(verdict, assumed=(*verdict.assumed, *turns))
+        if turns and not _is_an_angle(x, rest, laws, t):
+            yield _may_be_no_angle(x, place)
         if turns:
             yield from _beside_the_origin(place - rest, domain)
         if velocities:
@@ -236,9 +240,12 @@ def _without_turns(
 ) -> tuple[Expr, tuple[str, ...]]:
     """Leave out angles that jump by whole turns where the equations do not know of turns; say so.
 
-    An angle that goes on uniformly is no reason: ω t says the same without a jump.
+    An angle that goes on uniformly is no reason: ω t says the same without a jump. Nor is a staircase of turns beside a
+    place that goes on uniformly, which stands still or moves evenly in between.
     """
     turning = [term for term in sp.Add.make_args(place) if _jumps_by_turns(term)]
+    if turning and vanishes(place.diff(t, 2), domain, 0.5).holds:
+        return place, ()
     turning = [term for term in turning if not vanishes(term.diff(t, 2), domain, 0.5).holds]
     if not turning or not all(_knows_no_turns(e, x) for e in laws):
         return place, ()
@@ -263,7 +270,33 @@ def _jumps_by_turns(term: Expr) -> bool:
     if isinstance(angle, sp.atan2):  # through the origin it jumps by half a turn
         around = all(cut.beyond is not None for cut in cuts_of(angle, sorted(free_symbols(angle), key=str)))
         return factor.is_integer is True and around
-    return isinstance(angle, sp.atan) and factor.is_even is True and bool(arguments(angle)[0].has(sp.tan))
+    return isinstance(angle, sp.atan) and factor.is_even is True and _goes_through_infinity(angle)
+
+
+def _goes_through_infinity(angle: Expr) -> bool:
+    """Tell whether 2 atan turns once where the tangent does: of (a tan u + b)/(c tan u + d), not of exp(tan u)."""
+    inside = arguments(angle)[0]
+    tangents = inside.atoms(sp.tan)
+    if len(tangents) != 1:
+        return False
+    T = sp.Dummy("T", real=True)
+    above, below = sp.fraction(sp.together(inside.xreplace({next(iter(tangents)): T})))
+    return (above.has(T) or below.has(T)) and all(is_affine(side, [T]) for side in (above, below))
+
+
+def _is_an_angle(x: Symbol, rest: Expr, laws: Sequence[Expr], t: Symbol) -> bool:
+    """Tell whether a coordinate is an angle: it is called so, or stands in the laws and does nothing but wind."""
+    return is_angle(x.name) or (any(law.has(x) for law in laws) and not rest.has(t))
+
+
+def _may_be_no_angle(x: Symbol, place: Expr) -> Verdict:
+    why = (
+        f"{x} = {place} jumps by whole turns, and whether {x} is an angle was not decided; "
+        "call it theta or phi if it is one"
+    )
+    return Verdict(
+        Status.UNDECIDED, "the motion is continuous", evidence=(Evidence("open", why),), feedback=why
+    )
 
 
 def _knows_no_turns(equation: Expr, x: Symbol) -> bool:

@@ -11,8 +11,8 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.cached_property import cached_property
-from canon.expression.symbols.user_input import by_symbol, given_expression, given_kind
-from canon.mechanics.algebra.substitution import entry, substitute
+from canon.expression.symbols.user_input import by_symbol, free_name, given_expression, given_kind
+from canon.mechanics.algebra.substitution import entry, substitute, symbols_of
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.perturbation.coefficient_field import ring_over
 from canon.mechanics.perturbation.lie_transform import chain, transformed
@@ -129,8 +129,9 @@ class NormalForm:
 
     @cached_property
     def actions(self) -> tuple[Symbol, ...]:
-        """Symbols I₁ … Iₙ of the actions."""
-        return tuple(Symbol(f"I{j + 1}", real=True) for j in range(len(self.source.q)))
+        """Symbols I₁ … Iₙ of the actions, with an underscore behind them where H has a parameter of that name."""
+        taken = {s.name for s in symbols_of(self.source.H)}
+        return tuple(Symbol(free_name(f"I{j + 1}", taken), real=True) for j in range(len(self.source.q)))
 
     def in_actions(self) -> Expr:
         """Return K as a function of the actions Iⱼ = z z̄/(2κ), or a b of a hyperbolic pair.

@@ -17,6 +17,7 @@ from sympy import Expr, Symbol
 from sympy.core.function import AppliedUndef
 
 from canon.exercise.question.deadline import PROOF_SECONDS, Deadline
+from canon.expression.symbols.user_input import free_name
 from canon.frozen_mapping import FrozenMapping
 from canon.mechanics.algebra.substitution import exchanged, substitute, symbols_of
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
@@ -281,7 +282,7 @@ def _kept_tori(
     still = Hamiltonian(exchanged(energy, frozen), q, p, t)
     there = Domain(tuple(cast("Boolean", c.xreplace(frozen)) for c in conditions), FrozenMapping(dict(box)))
     try:
-        integral = hamilton_jacobi(still, domain=there, energy=Symbol("E_0", real=True))
+        integral = hamilton_jacobi(still, domain=there, energy=_energy_of(still))
     except NotSeparatedError as reason:
         raise Undecided(f"actions are known where the Hamilton–Jacobi equation separates; {reason}") from None
     try:
@@ -341,7 +342,16 @@ def _frozen(H: Expr, state: Sequence[Symbol]) -> dict[Expr, Expr]:
         raise Undecided(
             "H holds a function of the coordinates that is not given, so its actions are not known"
         )
-    return {f: Symbol(f"{f.func}_{i}", real=True, positive=f.is_positive) for i, f in enumerate(functions)}
+    taken = {s.name for s in symbols_of(H)}
+    names = [free_name(f"{f.func}_{i}", taken) for i, f in enumerate(functions)]
+    return {
+        f: Symbol(name, real=True, positive=f.is_positive) for f, name in zip(functions, names, strict=True)
+    }
+
+
+def _energy_of(system: Hamiltonian) -> Symbol:
+    """Return a symbol for the energy that is none of the parameters, such as a field E_0."""
+    return Symbol(free_name("E_0", {s.name for s in symbols_of(system.H)}), real=True)
 
 
 def _bounded(integral: CompleteIntegral, domain: Domain, deadline: Deadline) -> Iterator[ActionVariables]:

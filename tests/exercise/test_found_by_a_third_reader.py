@@ -1,0 +1,121 @@
+"""Claims by which a third reader of the code had wrong verdicts, with wrong twins: staircases of turns, gauge terms by
+angles, and parameters that are called as canon calls its own symbols."""
+
+import pytest
+
+from canon.exercise.claim_verdict import InvalidClaim, judge
+from canon.exercise.explained_judgement import judgements
+from canon.exercise.sheet.sheet import Claim, claim_from
+
+BUDGET = 60.0
+"""Seconds for a claim: that a busy machine is slow is no question here."""
+
+STAIRS = "atan2(2*sin(t), cos(t)) - t - atan(sin(t)*cos(t)/(cos(t)**2 + 2*sin(t)**2))"
+"""0, −2π, −4π, …"""
+
+
+def said(kind, **keys):
+    """Return the verdict on a claim as a word."""
+    return judge(Claim("a", kind, keys, budget=BUDGET)).status.value
+
+
+@pytest.mark.parametrize(
+    ("H", "place", "momentum", "due"),
+    [
+        ("p**2/(2*m)", "v*t", "m*v", "holds"),
+        ("p**2/(2*m)", f"v*t + {STAIRS}", "m*v", "fails"),
+        ("p**2/(2*m)", f"v*t + 5*({STAIRS})", "m*v", "fails"),
+        ("p**2/2 - cos(x)", "pi", "0", "holds"),
+        ("p**2/2 - cos(x)", f"pi + {STAIRS}", "0", "fails"),
+        ("p**2/(2*cosh(tan(t))*cos(t)**2)", "2*atan(exp(tan(t)))", "1", "undecided"),
+    ],
+)
+def test_a_particle_does_not_leap_by_whole_turns(H, place, momentum, due):
+    keys = {"q": ["x"], "p": ["p"], "parameters": {"m": "positive", "v": "positive"}, "H": H}
+    assert said("hamilton-equations", **keys, solution={"x": place, "p": momentum}) == due
+
+
+@pytest.mark.parametrize(("name", "due"), [("phi", "holds"), ("x", "undecided")])
+def test_only_an_angle_may_be_given_up_to_whole_turns(name, due):
+    H = "p**2/(2*(4*sin(t)**2 + cos(t)**2))"
+    solution = {name: "atan2(2*sin(t), cos(t))", "p": "2"}
+    assert said("hamilton-equations", q=[name], p=["p"], H=H, solution=solution) == due
+
+
+@pytest.mark.parametrize(("place", "due"), [("v*t", "holds"), (f"v*t + {STAIRS}", "fails")])
+def test_a_solution_does_not_leap_by_whole_turns(place, due):
+    keys = {"q": ["x"], "L": "m*x_dot**2/2", "parameters": {"m": "positive", "v": "positive"}}
+    assert said("solution", **keys, solution={"x": place}, initial={"x": "0", "x_dot": "v"}) == due
+
+
+FREE = "(x_dot**2 + y_dot**2)/2"
+RATE = "(x*y_dot - y*x_dot)/(x**2 + y**2)"
+
+
+@pytest.mark.parametrize(
+    ("more", "F", "due"),
+    [
+        (RATE, "atan2(y, x)", "holds"),
+        (f"2*{RATE}", "atan2(y, x)", "fails"),
+        (f"atan2(y, x) + t*{RATE}", "t*atan2(y, x)", "fails"),
+        (f"x_dot*atan2(y, x) + x*{RATE}", "x*atan2(y, x)", "fails"),
+    ],
+)
+def test_a_gauge_term_steps_by_a_number_at_most(more, F, due):
+    keys = {"q": ["x", "y"], "L1": FREE, "L2": f"{FREE} + {more}", "relation": "gauge", "F": F}
+    assert said("lagrangian-equivalence", **keys) == due
+
+
+@pytest.mark.parametrize("name", ["I1", "c"])
+@pytest.mark.parametrize(("K", "due"), [("J + 3*{}*J**2/2", "holds"), ("J", "fails")])
+def test_a_moment_of_inertia_is_no_action_of_a_normal_form(name, K, due):
+    keys = {"q": ["q"], "p": ["p"], "parameters": {name: "real"}, "actions": ["J"], "degree": 4}
+    H = f"(p**2 + q**2)/2 + {name}*q**4"
+    assert said("normal-form", **keys, H=H, K=K.format(name)) == due
+
+
+@pytest.mark.parametrize(
+    ("J", "due"),
+    [
+        ("(p**2 + (w_0**2 + w(tau)**2)*q**2)/(2*sqrt(w_0**2 + w(tau)**2))", "holds"),
+        ("(p**2 + 2*w(tau)**2*q**2)/(2*sqrt(2)*w(tau))", "fails"),
+    ],
+)
+def test_a_parameter_is_no_function_of_the_slow_time(J, due):
+    keys = {
+        "q": ["q"], "p": ["p"], "parameters": {"w": "positive", "w_0": "positive", "tau": "real"},
+        "functions": {"w": ["tau"]}, "H": "p**2/2 + (w_0**2 + w(tau)**2)*q**2/2",
+    }  # fmt: skip
+    assert said("action-angle", **keys, J=[J]) == due
+
+
+@pytest.mark.parametrize(("J", "due"), [("(p**2 + q**2)/2", "holds"), ("p**2 + q**2", "fails")])
+def test_a_field_may_be_called_as_the_energy_is(J, due):
+    keys = {"q": ["q"], "p": ["p"], "parameters": {"E_0": "positive"}}
+    assert said("action-angle", **keys, H="E_0*(p**2 + q**2)/2", J=[J]) == due
+
+
+@pytest.mark.parametrize(("place", "due"), [("x", "holds"), ("2*x", "fails"), ("x + x_dot", "invalid")])
+def test_a_position_in_the_energy_of_accelerations_holds_no_velocity(place, due):
+    keys = {"q": ["x"], "parameters": {"m": "positive"}, "bodies": [{"m": "m", "r": [place]}]}
+    if due == "invalid":
+        with pytest.raises(InvalidClaim, match="position depends on coordinates and time only"):
+            said("gibbs-appell", **keys, S="m*x_ddot**2/2")
+        return
+    assert said("gibbs-appell", **keys, S="m*x_ddot**2/2") == due
+
+
+def test_the_multipliers_of_constraints_on_velocities_are_told_by_their_own_convention():
+    keys = {"q": ["x", "y"], "L": "(x_dot**2 + y_dot**2)/2", "constraints": ["y_dot - t*x_dot"]}
+    answer = {"multipliers": ["lam"], "claim": ["x_ddot - t*lam", "y_ddot + lam"]}
+    claim = claim_from({"id": "a", "kind": "nonholonomic", "budget": 20, **keys, **answer})
+    *_, (judgement, _) = judgements(claim)
+    assert judgement.feedback.endswith("Σ λ ∂g/∂q̇")
+
+
+def test_a_factor_that_holds_the_time_makes_no_constraint_rheonomic():
+    keys = {"q": ["x", "y"], "constraints": ["exp(t)*(x - y) = 0"]}
+    assert said("constraint-class", **keys, **{"class": ["rheonomic"]}) == "fails"
+    assert said("constraint-class", **keys, **{"class": ["scleronomic"]}) == "holds"
+    verdict = judge(Claim("a", "constraint-class", keys | {"class": ["rheonomic"]}, budget=BUDGET))
+    assert "what is allowed does not depend on the time" in verdict.feedback
