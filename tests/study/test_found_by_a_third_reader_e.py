@@ -42,7 +42,7 @@ def test_functions_with_other_defaults_are_others(one, other):
 
 
 def test_a_default_that_cannot_be_told_from_another_is_refused():
-    with pytest.raises(TypeError, match="the default <object object"):
+    with pytest.raises(TypeError, match="can't be told from another"):
         kept(object())
     assert kept(None) == kept(None)
 
