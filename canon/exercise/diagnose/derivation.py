@@ -44,7 +44,8 @@ def multipliers(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     trial = reading
     for key, f in changed.items():
         trial = trial.with_instead(key, f)
-    on_velocities = reading.claim.kind == "nonholonomic"
+    velocities = [velocity(x) for x in reading.symbols("q")]
+    on_velocities = any(g.has(*velocities) for g in reading.equations("constraints"))
     mistake = Mistake.REACTIONS_OPPOSITE if on_velocities else Mistake.MULTIPLIERS_OPPOSITE
     yield Diagnosis((Change.of(mistake, tuple(opposite)),), trial)
 
