@@ -185,8 +185,9 @@ def _goes_on(text: str, end: re.Match[str]) -> bool:
     """
     if end.group() != "\n":
         return False
-    before = re.split(r"[;\n]", text[: end.start()])[-1].strip()
-    after = re.split(r"[;\n]", text[end.end() :], maxsplit=1)[0].strip()
+    begin = 1 + max(text.rfind(mark, 0, end.start()) for mark in ";\n")
+    before = text[begin : end.start()].strip()
+    after = text[end.end() :].partition("\n")[0].partition(";")[0].strip()
     if not before or not after:
         return False
     if re.search(r"(?<![<>!])[-=+−*/·×]$", before) or re.match(r"=(?![=>])", after):

@@ -50,7 +50,7 @@ BEFORE_LOST = 0.1
 """Relative energy error from which a run no longer shows the motion that was asked for."""
 
 TIMED_SECONDS = 0.001
-"""Processor time over which a step is timed, at least: some thirty times what a run takes before its first step."""
+"""Processor time over which a step is timed, at least: long beside what a run takes before its first step."""
 
 TIMINGS = 4
 """Timed runs, of which the least counts: other programs only add to it."""
