@@ -241,6 +241,19 @@ def test_round_off_of_short_steps_does_not_drift():
     assert abs(np.mean([motion.energy_error[-1] for motion in ends])) < 0.1 * u * n**0.5
 
 
+@pytest.mark.parametrize("steps_a_period", [2.3, 5.3])
+def test_steps_as_long_as_the_orbit_do_not_drift(steps_a_period):
+    # With Stumpff's series broken off at a fifth of a rounding unit the mean is 0.06 and 0.006 u a step.
+    u, n, step = 2.0**-53, 1_000_000, 2 * np.pi / steps_a_period
+    starts = np.array([kepler_start(0.2 + 1e-3 * k) for k in range(16)]).T
+    method = WisdomHolman()
+    motion = propagate(KEPLER, (0, n * step), starts, method=method, step=step, samples=100)
+    increments = np.diff(motion.energy_error / u, axis=0)
+    mean, deviation = increments.mean(), increments.std() / np.sqrt(increments.size)
+    assert abs(mean) < 4.5 * deviation
+    assert deviation * 100 / n < {2.3: 0.06 / 15, 5.3: 0.006 / 5}[steps_a_period]
+
+
 def test_a_flyby_is_exact():
     start = [-20.0, 3.0, 1.5, 0.0]
     true = propagate(KEPLER, (0, 40), start, method=Taylor(), precision="extended", samples=1).final
