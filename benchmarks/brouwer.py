@@ -30,15 +30,18 @@ STORED = Path(__file__).parent / "results" / "brouwer.txt"
 ECCENTRICITY, UNIT, SAMPLES = 0.2, 2.0**-53, 1000
 LAGS = (1, 2, 5, 10, 20, 50, 100, 200)
 CASES = (
-    (Splitting("kahan-li-8"), 250.3, {10**8: 32, 10**9: 8}),
-    (Splitting("sofroniou-spaletta-10"), 125.3, {10**8: 32, 10**9: 8}),
-    (Gauss(6), 40.3, {10**8: 6, 10**9: 2}),
-    (Gauss(8), 25.3, {10**8: 6, 10**9: 2}),
-    (WisdomHolman(), 2.3, {10**8: 32, 10**9: 8}),
+    (Splitting("kahan-li-8"), "compensated", 250.3, {10**8: 32, 10**9: 8}),
+    (Splitting("sofroniou-spaletta-10"), "compensated", 125.3, {10**8: 32, 10**9: 8}),
+    (Gauss(6), "compensated", 40.3, {10**8: 6, 10**9: 2}),
+    (Gauss(8), "compensated", 25.3, {10**8: 6, 10**9: 2}),
+    (WisdomHolman(), "compensated", 2.3, {10**8: 32, 10**9: 8}),
+    (WisdomHolman(), "compensated", 40.3, {10**8: 32}),
+    (WisdomHolman(), "extended", 2.3, {10**8: 8}),
 )
-"""Method, steps a period so that its own error lies below the rounding of one step, orbits by the number of steps.
+"""Method, precision, steps a period, orbits by the number of steps.
 
-A whole number of steps would be in resonance with the motion, which all have the same period.
+The method's own error lies below the rounding of one step. A whole number of steps would be in resonance with the
+motion, which all have the same period.
 """
 
 
@@ -64,14 +67,21 @@ def exponent(squares: np.ndarray) -> float:
     return float(slope)
 
 
-def row(method: Splitting | Gauss | WisdomHolman, steps_a_period: float, steps: int, orbits: int) -> str:
+def named(method: Splitting | Gauss | WisdomHolman, precision: str) -> str:
+    """Return the word a row begins with."""
+    return str(method) if precision == "compensated" else f"{method},{precision}"
+
+
+def row(
+    method: Splitting | Gauss | WisdomHolman, precision: str, steps_a_period: float, steps: int, orbits: int
+) -> str:
     """Run one method and describe its error."""
     kepler = find("kepler")
     step = 2 * np.pi / steps_a_period
     begun = time.process_time()
     motion = propagate(
         kepler.hamiltonian, (0.0, steps * step), starts(orbits), method=method, step=step,
-        precision="compensated", parameters=dict.fromkeys(kepler.values, 1), samples=SAMPLES,
+        precision=precision, parameters=dict.fromkeys(kepler.values, 1), samples=SAMPLES,
     )  # fmt: skip
     spent = time.process_time() - begun
     error = motion.energy_error / UNIT
@@ -84,7 +94,7 @@ def row(method: Splitting | Gauss | WisdomHolman, steps_a_period: float, steps: 
     at_end = np.sqrt((error[-1] ** 2).mean() / motion.steps)
     walk = np.sqrt(squares[0].mean() / block)
     return (
-        f"{method!s:22} {steps_a_period:7} {motion.steps:9.0e} {orbits:6} {walk:9.3f} {at_end:11.3f} "
+        f"{named(method, precision):22} {steps_a_period:7} {motion.steps:9.0e} {orbits:6} {walk:9.3f} {at_end:11.3f} "
         f"{exponent(squares):8.3f} ± {np.std(drawn):.3f} {bias:+8.1f} {abs(error).max() * UNIT:12.1e} {spent:8.0f}"
     )
 
@@ -104,21 +114,23 @@ def main() -> None:
     tools = ", ".join(f"{name} {version(name)}" for name in ("numpy", "llvmlite"))
     head = f"python benchmarks/brouwer.py --run, {date.today()}, {platform.machine()}"
     columns = "steps/T     steps orbits  walk/u√n end rms/u√n         exponent   bias/σ   max |dE/E|    CPU s"
-    lines = [f"{head}, Python {platform.python_version()}, {tools}", f"{'compensated':22} {columns}"]
+    lines = [f"{head}, Python {platform.python_version()}, {tools}", f"{'method':22} {columns}"]
     print(*lines, sep="\n", flush=True)
     stored = {
-        (name, float(steps)): line
+        (name, float(each), float(steps)): line
         for line in STORED.read_text(encoding="utf-8").splitlines()[2:]
-        for name, _, steps, *_ in [line.split()]
+        for name, each, steps, *_ in [line.split()]
     }
     is_short = given.orbits is not None or given.steps not in (None, 1e8, 1e9)
     for number in (int(given.steps or 1e8),) if is_short else (10**8, 10**9):
-        for method, steps_a_period, by_steps in CASES:
-            if str(method).startswith(given.run) and given.steps in (None, number):
+        for method, precision, steps_a_period, by_steps in CASES:
+            key = named(method, precision), steps_a_period, number
+            asked = key[0].startswith(given.run) and given.steps in (None, number)
+            if asked and (is_short or number in by_steps):
                 orbits = given.orbits or by_steps.get(number, 2)
-                lines.append(row(method, steps_a_period, number, orbits))
-            elif (str(method), number) in stored and not is_short:
-                lines.append(stored[str(method), number])
+                lines.append(row(method, precision, steps_a_period, number, orbits))
+            elif key in stored and not is_short:
+                lines.append(stored[key])
             else:
                 continue
             print(lines[-1], flush=True)
