@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 
 from canon.cached_property import cached_property
+from canon.expression.symbols.repeated_sum import written_out
 from canon.expression.symbols.user_input import given_expression, given_kind, given_seconds, given_symbols
 from canon.proof.analytic import is_analytic, proved_sign
 from canon.proof.definedness.open_regimes import regimes
@@ -153,7 +154,10 @@ def systems_compared(
     start = time.monotonic()
     deadline = start + given_seconds(budget)
     given = [
-        [given_expression(e, f"equation {i} of the {which} system") for i, e in enumerate(system, start=1)]
+        [
+            written_out(given_expression(e, f"equation {i} of the {which} system"))
+            for i, e in enumerate(system, start=1)
+        ]
         for which, system in zip(_ORDINALS, (system_a, system_b), strict=True)
     ]
     off = off_kinks([e for system in given for e in system], domain)

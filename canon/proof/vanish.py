@@ -91,7 +91,8 @@ def vanishes(expr: Expr | sp.MatrixBase, domain: Domain = EVERYWHERE, budget: fl
     """
     start, domain, budget = time.monotonic(), as_domain(domain), given_seconds(budget)
     if isinstance(expr, sp.MatrixBase):
-        return _matrix_vanishes(expr, domain, start, budget).about("the matrix is zero")
+        matrix = expr.applyfunc(written_out)
+        return _matrix_vanishes(matrix, domain, start, budget).about("the matrix is zero")
     verdict = _decide(written_out(expr), sp.Integer(0), domain, start + budget, ALONE)
     return replace(verdict, question="the expression is zero", seconds=time.monotonic() - start)
 
@@ -137,9 +138,10 @@ def equal(
     if isinstance(a, sp.MatrixBase) and isinstance(b, sp.MatrixBase):
         if a.shape != b.shape:
             raise ValueError(f"matrices of shapes {a.shape} and {b.shape} cannot be compared entry by entry")
-        verdict = _matrix_vanishes(a - b, domain, start, budget)
+        first, second = a.applyfunc(written_out), b.applyfunc(written_out)
+        verdict = _matrix_vanishes(first - second, domain, start, budget)
         if not verdict.fails:
-            pairs = zip(cast("list[Expr]", a.flat()), cast("list[Expr]", b.flat()), strict=True)
+            pairs = zip(cast("list[Expr]", first.flat()), cast("list[Expr]", second.flat()), strict=True)
             verdict = _entries_with_values(verdict, dict.fromkeys(pairs), domain, start + budget)
         return verdict.about("the matrices are equal")
     verdict = _decide(written_out(a), written_out(b), domain, start + budget, SIDES)

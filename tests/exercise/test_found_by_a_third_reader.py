@@ -119,3 +119,82 @@ def test_a_factor_that_holds_the_time_makes_no_constraint_rheonomic():
     assert said("constraint-class", **keys, **{"class": ["scleronomic"]}) == "holds"
     verdict = judge(Claim("a", "constraint-class", keys | {"class": ["rheonomic"]}, budget=BUDGET))
     assert "what is allowed does not depend on the time" in verdict.feedback
+
+
+AGAINST = "atan2(q, p) - atan2(2*(q + p), p - q)"
+"""Two angles about one centre, one against the other, and what makes their sum 0 on some wedges and 2π on others."""
+WEDGES = f"{AGAINST} + atan((2*p**2 + p*q + q**2)/(p**2 + p*q + 2*q**2))"
+
+
+@pytest.mark.parametrize(
+    ("more", "due"), [("0", "holds"), (WEDGES, "fails"), (f"3*({WEDGES})", "fails"), (AGAINST, "fails")]
+)
+def test_angles_that_undo_each_other_are_no_matter_of_choice(more, due):
+    keys = {"q": ["q"], "p": ["p"], "H": "(p**2 + q**2)/2"}
+    assert said("constant-of-motion", **keys, I=f"p**2 + q**2 + {more}") == due
+    identity = {"new_q": ["Q"], "new_p": ["P"], "map": {"Q": ["q"], "P": ["p"]}}
+    F = f"q*P + {more.replace('p', 'P')}"
+    assert said("generating-F2", q=["q"], p=["p"], **identity, F=F) == due
+
+
+def test_phases_of_two_oscillators_may_step():
+    keys = {"q": ["x", "y"], "p": ["p_x", "p_y"], "H": "(p_x**2 + x**2 + p_y**2 + y**2)/2"}
+    assert said("constant-of-motion", **keys, I="atan2(x, p_x) - atan2(y, p_y)") == "holds"
+    assert said("constant-of-motion", **keys, I="atan2(x, p_x) - 2*atan2(y, p_y)") == "fails"
+
+
+@pytest.mark.parametrize(
+    ("assumed", "values", "due"),
+    [
+        ("nonzero", [{}], "holds"),
+        ("real", [{}], "fails"),
+        ("positive", [{}], "holds"),
+        ("nonzero", [{"a": "1"}], "fails"),
+    ],
+)
+def test_an_open_value_is_one_where_the_answers_have_a_value(assumed, values, due):
+    keys = {"q": ["q"], "p": ["p"], "Q": ["a*q"], "P": ["p/a"], "parameters": {"a": assumed}}
+    assert said("parameters", of="canonicity", find=["a"], values=values, **keys) == due
+
+
+def test_right_for_one_is_not_said_of_what_is_negative():
+    keys = {"q": ["x"], "L": "x_dot**2/2 + a*x**4/4 + a**2*x**2/2", "claim": ["x_ddot - x**3 - x"]}
+    told = {}
+    for assumed in ("negative", "real"):
+        claim = claim_from({"id": "a", "kind": "euler-lagrange", "parameters": {"a": assumed}, **keys})
+        *_, (told[assumed], _) = judgements(claim)
+    assert "a = 1" in told["real"].feedback
+    assert told["negative"].status == "fails"
+    assert "a = 1" not in told["negative"].feedback
+
+
+@pytest.mark.parametrize(
+    ("exact", "order", "claimed", "right"),
+    [("cos(e)/e**8", -8, "2/e**8", "e**(-8)"), ("cos(e)/e", 1, "2/e", "-e/2 + 1/e")],
+)
+def test_what_is_right_at_a_pole_is_the_expansion_itself(exact, order, claimed, right):
+    keys = {"exact": [exact], "small": ["e"], "order": order, "parameters": {"e": "real"}}
+    *_, (told, _) = judgements(claim_from({"id": "a", "kind": "first-order", **keys, "claim": [claimed]}))
+    assert (told.status, told.corrected) == ("fails", right)
+    assert said("first-order", **keys, claim=[right]) == "holds"
+
+
+def test_a_force_may_hold_a_length_t_where_the_time_is_tau():
+    keys = {"q": ["x"], "t": "tau", "parameters": {"t": "positive", "F": "real"}}
+    force = [{"F": ["F*t"], "r": ["x"]}]
+    assert said("generalized-force", **keys, forces=force, Q=["F*t"]) == "holds"
+    assert said("generalized-force", **keys, forces=force, Q=["F*tau"]) == "fails"
+
+
+def test_rates_of_quasi_velocities_hold_no_velocities_of_coordinates():
+    keys = {"q": ["x", "y"], "quasi": ["u"], "parameters": {"m": "positive"}}
+    bodies = [{"m": "m", "r": ["x", "y"]}]
+    with pytest.raises(InvalidClaim, match=r"q_dot\[1\]: holds x_dot"):
+        said("gibbs-appell", **keys, q_dot=["u", "x_dot*y"], bodies=bodies, claim=["m*u_dot"])
+
+
+@pytest.mark.parametrize("declared", [{}, {"delta_x": "real"}])
+@pytest.mark.parametrize(("boundary", "due"), [("m*x_dot*delta_x", "holds"), ("2*m*x_dot*delta_x", "fails")])
+def test_a_variation_may_be_declared(declared, boundary, due):
+    keys = {"q": ["x"], "parameters": {"m": "positive", **declared}, "L": "m*x_dot**2/2"}
+    assert said("variation", **keys, boundary=boundary, integrand="-m*x_ddot*delta_x") == due

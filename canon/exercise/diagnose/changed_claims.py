@@ -109,10 +109,11 @@ def only_for(wrong: WrongAnswer) -> Iterator[Diagnosis]:
     }
     if reading.kind.two_sided and len(assumed) < 2:
         return  # at one point two functions may meet by chance
-    for name in [n for n in assumed if n not in variables and n in reading.scope.names][:8]:
+    named = {n: reading.scope.names[n] for n in assumed if n not in variables and n in reading.scope.names}
+    for name, symbol in [(n, s) for n, s in named.items() if s.is_negative is not True][:8]:
         if not effort.spend(SCREEN_STEPS):
             return
-        trial = replace(reading, at=MappingProxyType({reading.scope.names[name]: sp.S.One}))
+        trial = replace(reading, at=MappingProxyType({symbol: sp.S.One}))
         if _could_hold(trial) and judged_to_hold(trial, effort):
             yield Diagnosis.of(Mistake.ONLY_FOR, name, sp.S.One, repaired=trial)
 

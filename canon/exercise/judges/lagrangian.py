@@ -386,15 +386,21 @@ def appell_system(reading: Reading) -> GibbsAppell:
         reading.fault("q_dot", "missing; say what each velocity is in terms of the quasi-velocities")
     if reading.has("q_dot") and not reading.has("quasi"):
         reading.fault("quasi", "missing; name the quasi-velocities in which q_dot is given")
-    bodies = list(given_bodies(reading))
+    q, bodies = reading.symbols("q"), list(given_bodies(reading))
     for where, body in bodies:
         check_real(reading, f"{where}.r", body.r)
+    quasi = reading.symbols("quasi") if reading.has("quasi") else None
+    rates = reading.expressions("q_dot", like="q") if quasi is not None else None
+    foreign = {velocity(x) for x in q} - {*(quasi or ())}
+    for i, rate in enumerate(rates or ()):
+        if held := sorted(map(str, foreign & rate.free_symbols)):
+            reading.fault(f"q_dot[{i}]", f"holds {', '.join(held)}; write it in the quasi-velocities alone")
     return GibbsAppell(
         tuple(body for _, body in bodies),
-        reading.symbols("q"),
+        q,
         reading.expression("V", sp.S.Zero),
-        reading.symbols("quasi") if reading.has("quasi") else None,
-        reading.expressions("q_dot", like="q") if reading.has("quasi") else None,
+        quasi,
+        rates,
         reading.expressions("Qnc", like="q") if reading.has("Qnc") else None,
         reading.time,
     )

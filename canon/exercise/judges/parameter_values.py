@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias, cast
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.exercise.question.answer_values import without_value
+from canon.exercise.question.answer_values import hazards_of_answers, without_value
 from canon.exercise.question.deadline import BudgetSpent, Deadline
 from canon.exercise.question.parameter_system import Family, covers, families
 from canon.exercise.question.question import (
@@ -245,13 +245,12 @@ def _with(inner: Reading, family: Family) -> Reading:
 def _beside_exceptions(
     ask: Ask, reading: Reading, inner: Reading, family: Family, wanted: Sequence[Symbol], deadline: Deadline
 ) -> Iterator[Verdict]:
-    """Yield FAILS where a value of what is left open is no solution, as an answer says nothing then.
+    """Yield FAILS where a value of what is left open is no solution, as an answer says nothing or has no value then.
 
     What has to be regular, or to say something, was asked at generic values; what is left open may have every value.
     """
     open_, there = [s for s in wanted if s not in family], _with(inner, family)
-    for question in _questions(ask, there) if open_ else ():
-        gone, why = _not_all_zero(question)
+    for gone, why in _must_not_vanish(ask, there) if open_ else ():
         if not any(f.has(*open_) for f in gone):
             continue
         try:
@@ -265,6 +264,12 @@ def _beside_exceptions(
                 said = f"{_written(exception)} is left open, and is no solution: {why}"
                 yield Verdict(Status.FAILS, "all values", "exact", feedback=said)
                 return
+
+
+def _must_not_vanish(ask: Ask, there: Reading) -> Iterator[tuple[Sequence[Expr], str]]:
+    """Yield what must not vanish altogether for the inner claim to hold, and what is said where it does."""
+    yield from map(_not_all_zero, _questions(ask, there))
+    yield from (([risk.argument], f"{risk} then") for risk in hazards_of_answers(there))
 
 
 def _not_all_zero(question: Question) -> tuple[list[Expr], str]:

@@ -354,7 +354,8 @@ def _expanded(f: Expr, small: Sequence[Symbol], order: int, domain: Domain) -> E
     above, below = _quotient(f, small, epsilon, domain)
     if below != 1:
         start, _ = _order_of(below, epsilon, domain, Deadline.after(1.0))
-        above = sp.series(above / below, epsilon, 0, order + 1).removeO() if start < MOST_ORDERS else above
+        regular = sp.series(above / below * epsilon**start, epsilon, 0, order + start + 1).removeO()
+        above = sp.expand(regular / epsilon**start)
         return shown_short(substitute(above, {epsilon: small[0] if len(small) == 1 else sp.S.One}))
     terms = (c * _power_of(small, k) for k, c in enumerate(coefficients(above, epsilon, order)))
     return sp.Add(*map(shown_short, terms))

@@ -26,8 +26,12 @@ def variation(reading: Reading) -> Iterator[Question]:
     if L.has(*(acceleration(x) for x in q)):
         reading.fault("L", "a Lagrangian depends on coordinates, velocities and time only")
     forces = reading.expressions("Qnc", like="q") if reading.has("Qnc") else (sp.S.Zero,) * len(q)
-    deltas = tuple(Coordinate(f"delta_{x}", real=True) for x in q)
-    extended = reading.with_names({d.name: d for d in deltas})
+    extended = reading.with_names(
+        {d.name: d for x in q if (d := Coordinate(f"delta_{x}", real=True)).name not in reading.scope.names}
+    )
+    deltas = tuple(extended.scope.names[f"delta_{x}"] for x in q)
+    if L.has(*deltas):
+        reading.fault("L", f"{deltas[0]} is the variation of {q[0]}; call a parameter otherwise")
     boundary, integrand = extended.expression("boundary"), extended.expression("integrand")
     rates = [velocity(d) for d in deltas]
     if boundary.has(*rates) or integrand.has(*rates):

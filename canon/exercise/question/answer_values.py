@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from canon.proof.definedness.definedness import Lack
     from canon.proof.definedness.hazards import Hazard
 
-__all__ = ["what_may_vanish", "without_value", "without_value_on"]
+__all__ = ["hazards_of_answers", "what_may_vanish", "without_value", "without_value_on"]
 
 SHARE = 0.4
 """Part of the time of a claim that may be spent here."""
@@ -132,6 +132,12 @@ def what_may_vanish(reading: Reading, key: str, bound: Sequence[Symbol]) -> list
         As for :func:`without_value_on`.
     """
     return [risk.argument for _, f in _written_under(reading, key) for risk in _risks(f, bound)]
+
+
+def hazards_of_answers(reading: Reading) -> list[Hazard]:
+    """Return what must not vanish in the answers of a claim as they were written, with values of parameters put in."""
+    answers = [f for key, f in _written(reading) if _is_answer(reading, key)]
+    return hazards(anatomy(answers).parts)
 
 
 def _risks(f: Expr, bound: Sequence[Symbol]) -> list[Hazard]:

@@ -87,7 +87,7 @@ def given_forces(reading: Reading) -> Iterator[tuple[Expr, ...]]:
                 reading.fault(f"forces[{i}].omega", "should be affine in the velocities")
         else:
             check_real(reading, f"forces[{i}].{second}", along)
-            yield generalized_forces([strengths], [along], q)
+            yield generalized_forces([strengths], [along], q, reading.time)
 
 
 def check_real(reading: Reading, where: str, positions: Sequence[Expr]) -> None:

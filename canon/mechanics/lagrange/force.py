@@ -35,7 +35,10 @@ __all__ = [
 
 
 def generalized_forces(
-    forces: Sequence[Sequence[Expr]], positions: Sequence[Sequence[Expr]], q: Sequence[Symbol]
+    forces: Sequence[Sequence[Expr]],
+    positions: Sequence[Sequence[Expr]],
+    q: Sequence[Symbol],
+    t: Symbol = time,
 ) -> tuple[Expr, ...]:
     """Return Q = Σ F·∂r/∂q, from the work of forces in virtual displacements.
 
@@ -47,6 +50,8 @@ def generalized_forces(
         The positions r(q, t) at which they act, as vectors of the same length.
     q
         The generalized coordinates.
+    t
+        The time.
 
     Examples
     --------
@@ -56,7 +61,7 @@ def generalized_forces(
     (F*l*cos(theta),)
     """
     q = coordinate_symbols(q)
-    forces, positions = (tuple(plain_all(row, q) for row in rows) for rows in (forces, positions))
+    forces, positions = (tuple(plain_all(row, q, t) for row in rows) for rows in (forces, positions))
     return tuple(
         sp.Add(
             *(
@@ -70,7 +75,7 @@ def generalized_forces(
 
 
 def generalized_torques(
-    torques: Sequence[Expr], angles: Sequence[Expr], q: Sequence[Symbol]
+    torques: Sequence[Expr], angles: Sequence[Expr], q: Sequence[Symbol], t: Symbol = time
 ) -> tuple[Expr, ...]:
     """Return Q = Σ M ∂φ/∂q of torques that turn bodies through angles φ(q, t).
 
@@ -84,7 +89,7 @@ def generalized_torques(
     (-M, M)
     """
     q = coordinate_symbols(q)
-    pairs = list(zip(plain_all(torques, q), plain_all(angles, q), strict=True))
+    pairs = list(zip(plain_all(torques, q, t), plain_all(angles, q, t), strict=True))
     return tuple(sp.Add(*(torque * angle.diff(s) for torque, angle in pairs)) for s in q)
 
 
@@ -162,6 +167,7 @@ def do_no_work(
     positions: Sequence[Sequence[Expr]],
     q: Sequence[Symbol],
     domain: Domain | None = None,
+    t: Symbol = time,
 ) -> Verdict:
     """Tell whether reactions are ideal: Σ F·δr = 0 in every virtual displacement, time held fixed.
 
@@ -174,7 +180,7 @@ def do_no_work(
     'HOLDS'
     """
     q = coordinate_symbols(q)
-    Q = generalized_forces(forces, positions, q)
+    Q = generalized_forces(forces, positions, q, t)
     claims = [(f"the work along {s}", work) for s, work in zip(q, Q, strict=True)]
     return all_vanish(claims, "the reactions do no virtual work", domain)
 
@@ -209,10 +215,10 @@ def damper(
     return c * along**2 / (2 * square)
 
 
-def rayleigh_forces(F: Expr, q: Sequence[Symbol]) -> tuple[Expr, ...]:
+def rayleigh_forces(F: Expr, q: Sequence[Symbol], t: Symbol = time) -> tuple[Expr, ...]:
     """Return Q = −∂F/∂q̇ of Rayleigh's dissipation function F(q, q̇, t)."""
     q = coordinate_symbols(q)
-    power = plain(F, q)
+    power = plain(F, q, t)
     return tuple(-power.diff(velocity(s)) for s in q)
 
 
@@ -269,7 +275,7 @@ def electric_field(A: Sequence[Expr], phi: Expr, x: Sequence[Symbol], t: Symbol 
     return tuple(-potential.diff(s) - a.diff(t) for s, a in zip(x, components, strict=True))
 
 
-def magnetic_field(A: Sequence[Expr], x: Sequence[Symbol]) -> tuple[Expr, Expr, Expr]:
+def magnetic_field(A: Sequence[Expr], x: Sequence[Symbol], t: Symbol = time) -> tuple[Expr, Expr, Expr]:
     """Return B = ∇ × A in Cartesian coordinates.
 
     Raises
@@ -283,7 +289,7 @@ def magnetic_field(A: Sequence[Expr], x: Sequence[Symbol]) -> tuple[Expr, Expr, 
             f"{counted(len(A), 'component')} of A and {counted(len(x), 'coordinate')}: give three components and three "
             "coordinates, 0 for a component that is none"
         )
-    a = plain_all(A, x)
+    a = plain_all(A, x, t)
     return (
         a[2].diff(x[1]) - a[1].diff(x[2]),
         a[0].diff(x[2]) - a[2].diff(x[0]),
@@ -326,7 +332,7 @@ def lagrangian_of_bodies(
     (c*x_dot + k*x + m*x_ddot,)
     """
     q = coordinate_symbols(q)
-    damping = rayleigh_forces(dissipation, q)
+    damping = rayleigh_forces(dissipation, q, t)
     given = plain_all(forces_in_order(forces, q) or (sp.S.Zero,) * len(q), q, t)
     Q = [a + b for a, b in zip(given, damping, strict=True)]
     L = kinetic_energy(bodies, q, t) - plain(V, q, t)

@@ -113,9 +113,8 @@ def open_surfaces(f: Expr, moving: Sequence[Symbol], domain: Domain) -> list[Ope
         for gap, pool in pools.items()
         if not _is_of_one_kind(list(pool.branches.values()), domain) and not _keeps_away(gap, domain)
     ]
-    inside = [
-        OpenSurface(gap) for gap in _poles_inside(terms, moving, domain) if not _keeps_away(gap, domain)
-    ]
+    at_poles = [*_whole_numbers(terms, moving), *_poles_inside(terms, moving, domain)]
+    inside = [OpenSurface(gap) for gap in at_poles if not _keeps_away(gap, domain)]
     known = {surface.gap for surface in mixed}
     return [*mixed, *(surface for surface in inside if surface.gap not in known)]
 
@@ -234,6 +233,13 @@ def _is_divided_by(term: Expr, gap: Expr, parts: Sequence[Expr]) -> bool:
 
 
 # -- poles inside functions ----------------------------------------------------------------------------
+
+
+def _whole_numbers(terms: Sequence[Expr], moving: Sequence[Symbol]) -> list[Expr]:
+    """Return what vanishes where the argument of floor, ceiling, frac or Mod is a whole number or a multiple."""
+    steps = (sp.floor, sp.ceiling, sp.frac, sp.Mod)
+    found = {part for term in terms for part in term.atoms(*steps) if part.has(*moving)}
+    return [sp.sin(sp.pi * sp.Mul(u, *(1 / m for m in rest))) for u, *rest in map(arguments, found)]
 
 
 def _poles_inside(terms: Sequence[Expr], moving: Sequence[Symbol], domain: Domain) -> list[Expr]:

@@ -32,6 +32,7 @@ from canon.proof.continuity.one_sided import (
 )
 from canon.proof.continuity.smooth import PIECED
 from canon.proof.continuity.winding_centre import centre_of
+from canon.proof.continuity.windings import turns_undone
 from canon.proof.domain.domain import EVERYWHERE, Domain
 from canon.proof.domain.reality import certainly_real
 from canon.proof.domain.relations import parts_of
@@ -336,10 +337,11 @@ def _of_cuts(
     """Tell whether a function jumps at its cuts; values are told with the terms ``beside`` it that do not."""
     cuts = _open_cuts(f, moving, domain)
     centres = {cut.part: centre_of(cut, moving, domain) for cut in cuts}
-    winding = {angle: centre for angle, centre in centres.items() if centre and angles}
+    winding = _winding(f, [cut for cut in cuts if centres[cut.part]], moving, domain) if angles else set()
     assumed = tuple(
         f"{angle} is an angle that winds around {centre}; where it jumps is a matter of choice"
-        for angle, centre in winding.items()
+        for angle, centre in centres.items()
+        if angle in winding
     )
     at_angles = [cut for cut in cuts if cut.part in winding]
     open_ = _open_roots(f, moving, domain)
@@ -355,6 +357,11 @@ def _of_cuts(
         return Verdict(Status.HOLDS, f"{name} {CONTINUOUS}", "structure", assumed=assumed)
     why = f"{name} may jump, which its derivatives do not show; narrow the domain to where it does not"
     return Verdict(Status.UNDECIDED, f"{name} {CONTINUOUS}", evidence=(Evidence("open", why),), feedback=why)
+
+
+def _winding(f: Expr, angles: Sequence[Cut], moving: Sequence[Symbol], domain: Domain) -> set[Expr]:
+    """Return the angles of a function that wind about a centre, others that wind about it not undoing their turns."""
+    return {cut.part for cut in angles} - turns_undone(f, angles, moving, domain)
 
 
 def _open_roots(f: Expr, moving: Sequence[Symbol], domain: Domain) -> list[Expr]:

@@ -15,13 +15,13 @@ from canon.proof.trees.affine_form import is_affine
 from canon.proof.trees.sympy_types import free_symbols, short
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from sympy import Expr, Symbol
 
     from canon.proof.continuity.one_sided import Cut
 
-__all__ = ["centre_of", "common_zero"]
+__all__ = ["SMALL", "centre_of", "centres_near", "common_zero"]
 
 STARTS = 12
 STEPS = 24
@@ -63,12 +63,19 @@ def common_zero(pair: tuple[Expr, Expr], variables: Sequence[Symbol], domain: Do
     solved = _solved_in_turn(pair, variables)
     if solved:
         return solved
-    for point in domain.points(free_symbols(pair[0]) | free_symbols(pair[1]), STARTS):
+    found = next(centres_near(pair, variables, domain), None)
+    return "" if found is None else " and ".join(f"{f} = 0" for f in pair)
+
+
+def centres_near(
+    pair: tuple[Expr, Expr], variables: Sequence[Symbol], domain: Domain
+) -> Iterator[tuple[tuple[Symbol, Symbol], dict[Symbol, sp.Rational]]]:
+    """Yield places where two functions vanish together, found from some points of a domain, by which two variables."""
+    for point in domain.points(free_symbols(pair[0]) | free_symbols(pair[1]) | {*variables}, STARTS):
         for two in combinations(variables, 2):
             found = _newton(pair, two, point)
             if found is not None and domain.contains(point | found):
-                return " and ".join(f"{f} = 0" for f in pair)
-    return ""
+                yield two, {**point, **found}
 
 
 def _solved_in_turn(pair: tuple[Expr, Expr], variables: Sequence[Symbol]) -> str:

@@ -14,6 +14,7 @@ import sympy as sp
 from sympy import Rational, Symbol
 
 from canon.proof.trees.affine_form import is_affine
+from canon.proof.trees.polynomial import MOST_TERMS, terms_at_most
 from canon.proof.trees.sympy_types import by_name, free_symbols, rational
 
 if TYPE_CHECKING:
@@ -71,7 +72,10 @@ def _solved_step_by_step(
 ) -> dict[Symbol, Expr] | None:
     """Return some symbols in terms of the others, equations solved one by one; ``near`` gains roots as symbols."""
     known: dict[Symbol, Expr] = {}
-    left = [sp.expand(e) for e in _without_roots(equations, near, chance)]
+    left = list(_without_roots(equations, near, chance))
+    if any(terms_at_most(e) > MOST_TERMS for e in left):
+        return None
+    left = [sp.expand(e) for e in left]
     while left := [e for e in left if e != 0]:
         if any(e.is_number for e in left):
             return None

@@ -18,6 +18,7 @@ from sympy.core.relational import Relational
 from canon.proof.domain.balls import NotDecided, Undefined, Unmodelled, precision, value
 from canon.proof.domain.declarations import declared_complex
 from canon.proof.trees.anatomy import Anatomy, anatomy
+from canon.proof.trees.polynomial import MOST_TERMS, terms_at_most
 from canon.proof.trees.sympy_types import arguments, rational
 
 if TYPE_CHECKING:
@@ -180,8 +181,7 @@ def _roots(f: Expr, s: Symbol, base: Mapping[Symbol, sp.Rational]) -> Iterator[s
 
 
 def _polynomial_roots(f: Expr, s: Symbol, base: Mapping[Symbol, sp.Rational]) -> Iterator[sp.Rational]:
-    poly = sp.Poly(f, s)
-    if poly.degree() > MOST_DEGREE:
+    if terms_at_most(f) > MOST_TERMS or (poly := sp.Poly(f, s)).degree() > MOST_DEGREE:
         return
     coefficients = [_number(c, base) for c in reversed(poly.all_coeffs())]
     if None in coefficients:

@@ -16,7 +16,7 @@ from canon.proof.rungs.periods import period_of
 from canon.proof.trees.affine_form import is_affine
 from canon.proof.trees.anatomy import anatomy
 from canon.proof.trees.bound_variables import with_bound_variables
-from canon.proof.trees.polynomial import is_left_out, polynomial_factors
+from canon.proof.trees.polynomial import MOST_TERMS, is_left_out, polynomial_factors, terms_at_most
 from canon.proof.trees.replacement import KINKED, NoValue, defined_nowhere, replaced
 from canon.proof.trees.sympy_types import arguments, by_name, free_symbols
 
@@ -362,7 +362,8 @@ def under_derivatives(expr: sp.Basic, domain: Domain) -> set[sp.Basic]:
 def _pinched(domain: Domain) -> list[sp.Basic]:
     """Return g = 0 where the domain says both g ≥ 0 and g ≤ 0."""
     closed = [c for c in domain.conditions if isinstance(c, sp.GreaterThan | sp.LessThan)]
-    gaps = [sp.expand(cast("Expr", c.gts) - cast("Expr", c.lts)) for c in closed]
+    written = [cast("Expr", c.gts) - cast("Expr", c.lts) for c in closed]
+    gaps = [sp.expand(gap) for gap in written if terms_at_most(gap) <= MOST_TERMS]
     return [cast("sp.Basic", sp.Eq(gap, 0)) for gap in gaps if -gap in gaps and gap != 0][:1]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from math import comb, prod
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
@@ -12,14 +13,17 @@ from sympy import Expr
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["is_left_out", "polynomial_factors"]
+__all__ = ["MOST_TERMS", "is_left_out", "polynomial_factors", "terms_at_most"]
+
+MOST_TERMS = 4_000
+"""Terms up to which what is factored is multiplied out."""
 
 
 def polynomial_factors(expression: Expr) -> list[tuple[Expr, int]]:
     """Return the irreducible factors of an expression's numerator that are not numbers, and how often each occurs.
 
     The numerator is taken as a polynomial in symbols and in whatever else it holds, such as sin x. A factor of it
-    whose coefficients are not rational stays whole.
+    whose coefficients are not rational stays whole, and so does one that has very many terms when multiplied out.
 
     Examples
     --------
@@ -41,6 +45,8 @@ def polynomial_factors(expression: Expr) -> list[tuple[Expr, int]]:
 def _factors(base: Expr) -> list[tuple[Expr, int]]:
     if not base.free_symbols:
         return []
+    if terms_at_most(base) > MOST_TERMS:
+        return [(base, 1)]
     try:
         poly = sp.Poly(base)
     except (sp.PolynomialError, sp.GeneratorsNeeded):  # the latter where everything cancels
@@ -54,6 +60,26 @@ def _factors(base: Expr) -> list[tuple[Expr, int]]:
         (sp.Poly({powers: int(c) for powers, c in f.to_dict().items()}, *whole.gens).as_expr(), int(times))
         for f, times in found
     ]
+
+
+def terms_at_most(f: Expr) -> int:
+    """Return how many terms an expression can have when it is multiplied out, as a polynomial in whatever it holds.
+
+    Examples
+    --------
+    >>> x, y = sp.symbols("x y")
+    >>> terms_at_most((x + y + 1) ** 60 - sp.sin(x)), terms_at_most((x + 1) ** 100_000 - 2)
+    (1892, 100002)
+    """
+    if isinstance(f, sp.Add):
+        return sum(map(terms_at_most, f.args))
+    if isinstance(f, sp.Mul):
+        return prod(map(terms_at_most, f.args))
+    base, power = f.as_base_exp()
+    if isinstance(f, sp.Pow) and power.is_Integer and power > 1:
+        terms, n = terms_at_most(base), int(power)
+        return comb(terms + n - 1, n) if min(terms, n) < MOST_TERMS else terms + n
+    return 1
 
 
 def is_left_out(f: Expr, conditions: Iterable[sp.Basic]) -> bool:

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 from sympy import Expr
 
+from canon.proof.trees.polynomial import MOST_TERMS, terms_at_most
+
 if TYPE_CHECKING:
     from sympy import Symbol
 
@@ -31,7 +33,9 @@ class Root:
 
 
 def polynomial_in(f: Expr, x: Symbol) -> sp.Poly | None:
-    """Return an expression as a polynomial in one symbol, of degree 1 at least; None where it is none."""
+    """Return an expression as a polynomial in one symbol, of degree 1 at least; None for others and for long ones."""
+    if terms_at_most(f) > MOST_TERMS:
+        return None
     try:
         poly = sp.Poly(f, x)
     except sp.PolynomialError:
