@@ -196,6 +196,21 @@ def test_the_letter_of_an_integral_is_no_unit():
     assert same("Integral(2 s, (s, 0, x))", "x**2", UNITS)
 
 
+@pytest.mark.parametrize("text", ["2 s*x", "1/2 N*x^2", "5 J·x", "2 m*(x + 1)", "3 W * sqrt(x)"])
+def test_a_letter_before_a_factor_is_no_unit_but_a_name_that_was_not_declared(text):
+    with pytest.raises(LanguageError, match="not declared"):
+        parse_expression(text, scope("x"))
+    named = scope("x", "s N J m W")
+    assert same(text, text.replace(" ", "*", 1).replace("·", "*"), named)
+
+
+@pytest.mark.parametrize(
+    ("text", "meaning"), [("2 kg*9.81 m/s^2", "2*9.81"), ("3 kg*x", "3*x"), ("2 s", "2")]
+)
+def test_units_that_nothing_else_can_be_are_passed_over(text, meaning):
+    assert same(text, meaning, scope("x"))
+
+
 def test_moduli_of_word_and_mathtype_stay():
     bars = '<math><mi>k</mi><mfenced open="|" close="|"><mi>x</mi></mfenced></math>'
     brackets = "<math><mi>k</mi><mfenced><mrow><mi>x</mi><mo>+</mo><mi>m</mi></mrow></mfenced></math>"

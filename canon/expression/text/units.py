@@ -51,6 +51,8 @@ _SAID_OF_ACCELERATION = re.compile(
 """An acceleration by itself before its value."""
 _LONGEST_BEFORE = 60
 _FACTOR = re.compile(r"\s{0,9}[^\W_]|\s{0,9}[(\[√∛∜]")
+_TIMES_A_FACTOR = re.compile(r"\s{0,9}[*·⋅×]\s{0,9}(?:[^\W\d_]|[(\[√∛∜])")
+"""After one letter, as in 2 s*x: the letter is more likely a factor that was not declared."""
 _LETTERS = re.compile(r"[A-Za-zΩ]+")
 _REMEDY = f"SI units without prefixes can stand there: {', '.join(sorted(COHERENT))}; or leave it out"
 
@@ -112,6 +114,8 @@ def _bare(text: str, number: re.Match[str], scope: Scope) -> re.Match[str] | Non
     """Return a unit without brackets: no factor stands beside it, and none of its letters could be one."""
     bare = None if scope.implicit else _BARE.match(text, number.end())
     if bare is None or _FACTOR.match(text, bare.end()):
+        return None
+    if len(bare.group().strip()) == 1 and _TIMES_A_FACTOR.match(text, bare.end()):
         return None
     if any(_is_bound(name, text) for name in _LETTERS.findall(bare.group())):
         return None
