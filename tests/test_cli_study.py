@@ -107,6 +107,8 @@ def test_shares_of_several_jobs_merge_to_the_whole(small, tmp_path, capsys):
         share = tmp_path / f"part{k}.sqlite"
         assert main(["study", "run", str(small), "--share", f"{k}/3", "--store", str(share)]) == 0
     merged, whole = tmp_path / "merged.sqlite", tmp_path / "whole.sqlite"
+    assert main(["study", "merge", str(merged), str(tmp_path / "missing.sqlite")]) == 2
+    assert not merged.exists()
     assert main(["study", "merge", str(merged), *(str(tmp_path / f"part{k}.sqlite") for k in (1, 2, 3))]) == 0
     assert main(["study", "run", str(small), "--store", str(whole)]) == 0
     outcomes = [{key: r.outcome for key, r in Store(path).records().items()} for path in (merged, whole)]

@@ -234,9 +234,10 @@ def _asked_for(arguments: argparse.Namespace) -> Results:
 def _merge(arguments: argparse.Namespace) -> int:
     from canon.study.cases.store import Store
 
+    others = [_existing(other) for other in arguments.others]
     store = Store(arguments.store)
-    for other in arguments.others:
-        store.add_from(_existing(other))
+    for other in others:
+        store.add_from(other)
     return _told(store, None)
 
 

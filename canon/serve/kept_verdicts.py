@@ -38,13 +38,13 @@ class KeptVerdicts:
         self._found: OrderedDict[str, Judgement] = OrderedDict()
 
     def verdict(self, claim: Claim) -> Judgement | None:
-        """Return the verdict on a claim that says the same; None where none is remembered."""
+        """Return the verdict on a claim that says the same, which took no time now; None where none is remembered."""
         key = said(claim)
         if (found := self._found.get(key)) is None:
             return None
         self._found.move_to_end(key)
         title = str(claim.keys.get("title", ""))
-        return replace(found, id=claim.id, title=title, expect=claim.expect, file=claim.file)
+        return replace(found, id=claim.id, title=title, expect=claim.expect, file=claim.file, seconds=0.0)
 
     def keep(self, claim: Claim, judgement: Judgement) -> None:
         """Remember a verdict, if it is one that stays."""

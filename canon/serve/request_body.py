@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+from codecs import BOM_UTF8
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from starlette.requests import ClientDisconnect
@@ -79,11 +80,11 @@ def asked_claims(body: bytes, most: int) -> tuple[Sheet, bool]:
 
 def _one_claim(body: bytes) -> Claim | None:
     """Return the claim that a body is, read as in a sheet of one; None where it has none of a claim's own keys."""
-    if not body.lstrip().startswith(b"{"):
-        return None
+    body = body.removeprefix(BOM_UTF8)
     try:
-        said = sheet_from(b'{"claims": [' + body + b"]}").claims
-    except SheetError:
+        is_object = isinstance(json.loads(body), dict)
+        said = sheet_from(b'{"claims": [' + body + b"]}").claims if is_object else ()
+    except (ValueError, RecursionError, SheetError):
         return None  # the error is told of the body as it was sent
     claim = said[0] if len(said) == 1 else None
     return claim if claim is not None and "kind" in claim.keys else None
