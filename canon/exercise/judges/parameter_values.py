@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
+from itertools import islice
 from typing import TYPE_CHECKING, TypeAlias, cast
 
 import sympy as sp
@@ -248,28 +250,30 @@ def _beside_exceptions(
     """Yield FAILS where a value of what is left open is no solution, as an answer says nothing or has no value then.
 
     What has to be regular, or to say something, was asked at generic values; what is left open may have every value.
+    Answers may lack a value at places that are not found in closed form, as tan a does at π/2.
     """
     open_, there = [s for s in wanted if s not in family], _with(inner, family)
-    for gone, why in _must_not_vanish(ask, there) if open_ else ():
+
+    def exceptions(gone: Sequence[Expr], why: str) -> Iterator[Verdict]:
         if not any(f.has(*open_) for f in gone):
-            continue
-        try:
-            found = families(gone, open_, _given(reading, wanted), there.domain, deadline)
-        except Undecided as reason:
-            yield Verdict(Status.UNDECIDED, evidence=(Evidence("open", str(reason)),))
             return
-        for exception in found:
+        for exception in families(gone, open_, _given(reading, wanted), there.domain, deadline):
             together = {s: substitute(value, exception) for s, value in family.items()} | exception
             if exception and _is_allowed(inner, together):
                 said = f"{_written(exception)} is left open, and is no solution: {why}"
                 yield Verdict(Status.FAILS, "all values", "exact", feedback=said)
-                return
 
-
-def _must_not_vanish(ask: Ask, there: Reading) -> Iterator[tuple[Sequence[Expr], str]]:
-    """Yield what must not vanish altogether for the inner claim to hold, and what is said where it does."""
-    yield from map(_not_all_zero, _questions(ask, there))
-    yield from (([risk.argument], f"{risk} then") for risk in hazards_of_answers(there))
+    if not open_:
+        return
+    try:
+        for question in _questions(ask, there):
+            yield from islice(exceptions(*_not_all_zero(question)), 1)
+    except Undecided as reason:
+        yield Verdict(Status.UNDECIDED, evidence=(Evidence("open", str(reason)),))
+        return
+    for risk in hazards_of_answers(there):
+        with suppress(Undecided):
+            yield from islice(exceptions([risk.argument], f"{risk} then"), 1)
 
 
 def _not_all_zero(question: Question) -> tuple[list[Expr], str]:
