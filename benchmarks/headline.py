@@ -2,8 +2,8 @@
 
 ``python benchmarks/headline.py`` prints the stored table and draws docs/figures/headline.png from the stored runs;
 ``--run`` computes them anew (about a quarter of an hour of processor time), ``--run kepler`` or ``--run planets`` one
-of the two; ``--places`` only how far from its place each method puts the body after 1000 turns of the ellipse (half a
-minute).
+of the two, ``--case "canon: Gauss"`` the methods whose names begin so; ``--places`` only how far from its place each
+method puts the body after 1000 turns of the ellipse (half a minute).
 Methods too dear for the whole span stop earlier; what they would reach is extrapolated by the law their error
 follows (t for a drift, √t for round-off, constant for an error that is bounded) and marked as such.
 """
@@ -204,17 +204,23 @@ def main() -> None:
     )
     parser.add_argument("--run", action="store_true")
     parser.add_argument("--places", action="store_true")
+    parser.add_argument(
+        "--case", default="", help="only methods whose names begin so; the others stay as they are"
+    )
     parser.add_argument("--processes", type=int, default=1)
     parser.add_argument("problems", nargs="*", help=f"of {', '.join(PROBLEMS)}")
     given = parser.parse_args()
     if given.run:
         for name in given.problems or PROBLEMS:
-            problem, rows = PROBLEMS[name], []
-            with ProcessPoolExecutor(given.processes) as pool:
-                for row in pool.map(run, itertools.repeat(problem), problem.cases):
-                    rows.append(row)
-                    print(table(problem, rows[-1:])[-1], flush=True)
+            problem = PROBLEMS[name]
             stored = json.loads(STORED.read_text(encoding="utf-8")) if STORED.exists() else {}
+            found = {row["name"]: row for row in stored.get(name, []) if given.case}
+            asked = [case for case in problem.cases if case.name.startswith(given.case)]
+            with ProcessPoolExecutor(given.processes) as pool:
+                for row in pool.map(run, itertools.repeat(problem), asked):
+                    found[row["name"]] = row
+                    print(table(problem, [row])[-1], flush=True)
+            rows = [found[case.name] for case in problem.cases if case.name in found]
             tools = ", ".join(f"{tool} {version(tool)}" for tool in ("numpy", "scipy", "llvmlite", "heyoka"))
             stored |= {
                 name: rows,

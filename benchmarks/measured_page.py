@@ -242,9 +242,8 @@ SECTIONS = {
         ),
     ),
     "kernels": Section(
-        "Compiled loops take about as long as a C program of the same method, less for many bodies "
-        "and more for long chains; of many orbits "
-        "side by side each costs a fraction of that.",
+        "Compiled loops take about as long as a C program of the same method, and less for many bodies; of many "
+        "orbits side by side each costs a fraction of that.",
         (
             Table(
                 ("system", "method", "C, ns a step", "double, × C", "compensated, × C"),
@@ -282,8 +281,8 @@ SECTIONS = {
         ),
     ),
     "preparation": Section(
-        "A further motion of a system is prepared in a few milliseconds; code that was compiled once is loaded, and "
-        "energies of motions in double-double are evaluated in 113 bits.",
+        "A further motion of a system is prepared in less than a millisecond; code that was compiled once is loaded, "
+        "and energies of motions in double-double are evaluated in 113 bits.",
         (
             Table(
                 ("motion", "method", "whole call, ms", "its steps", "beside them"),
@@ -301,7 +300,7 @@ SECTIONS = {
     ),
     "brouwer": Section(
         "Over the whole run the energy error grows as the root of the number of steps: Brouwer's "
-        "law, the least that rounding allows.",
+        "law, the least that rounding allows. Two steps an orbit are far above it, and wander for millions of steps.",
         (
             Table(
                 (
@@ -364,8 +363,8 @@ SECTIONS = {
         ),
     ),
     "peers_losing": Section(
-        "Where steps have to vary by many powers of ten, where forces of a tree suffice, or where a few encounters "
-        "break quiet motion, other libraries may take less time; the last column says who does.",
+        "Where steps have to vary by many powers of ten, or where forces of a tree suffice, other libraries may take "
+        "less time; the last column says who does.",
         (
             Table(
                 ("problem", "error", "canon / the cheapest other", "by the whole call", ""),

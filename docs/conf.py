@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE.parent), str(HERE)]
 
+from binder import repository, with_a_link  # noqa: E402
 from fetch_inventories import mapping  # noqa: E402
 
 from canon import __version__  # noqa: E402  (the checkout's canon, found through the line above)
@@ -267,10 +268,16 @@ def show_colons(
         lines[:] = [line.replace(COLON, ":") for line in lines]
 
 
+def link_to_binder(_: Sphinx, page: str, source: list[str]) -> None:
+    """Put a link under a tutorial's title with which it is run on Binder, where the repository is public."""
+    source[0] = with_a_link(page, source[0], repository())
+
+
 def setup(app: Sphinx) -> None:
     """Write the list of public names and the commands' help before Sphinx reads them."""
     app.connect("autodoc-process-docstring", hide_colons, priority=400)  # napoleon's is 500
     app.connect("autodoc-process-docstring", show_colons, priority=600)
+    app.connect("source-read", link_to_binder)
     for name, text in (("api", public_names()), ("command_line", command_line())):
         page = HERE / "reference" / f"{name}.md"
         if not page.exists() or page.read_text(encoding="utf-8") != text:
