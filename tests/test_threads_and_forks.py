@@ -46,21 +46,19 @@ def proved(answer):
 def test_threads_wait_for_one_another_no_longer_than_their_budgets(processor_seconds):
     assert proved(prove_in_worker([EASY], Domain(), 20.0))
     hard = endless()
-    spent, used = [], processor_seconds()
+    answers, used = [], processor_seconds()
 
     def ask():
-        start = time.monotonic()
-        prove_in_worker([hard], Domain(), 1.5)
-        spent.append(time.monotonic() - start)
+        answers.append(prove_in_worker([hard], Domain(), 1.5))
 
     threads = [threading.Thread(target=ask) for _ in range(3)]
     for thread in threads:
         thread.start()
     for thread in threads:
         thread.join()
-    assert len(spent) == 3
-    assert max(spent) < 2 * min(spent)  # one after the other it would be three times as long
-    assert processor_seconds() - used < 3.0
+    assert len(answers) == 3
+    assert not any(map(proved, answers))
+    assert processor_seconds() - used < 3.0  # one after the other it would be 4.5
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork on this system")
