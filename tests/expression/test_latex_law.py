@@ -89,6 +89,11 @@ def test_what_sympy_prints_is_read_back(expression):
     assert read_back(expression), sp.latex(expression)
 
 
+def test_the_number_e_joins_no_equations_that_stand_in_other_places():
+    assert read_back(piecewise((slope_at(X), 2 * sp.E)))
+    assert not agree(*(piecewise((slope_at(X), k * sp.E)).subs(V, CUBE).doit() for k in (2, 3)))
+
+
 @pytest.mark.slow
 @settings(max_examples=3000, suppress_health_check=list(HealthCheck), deadline=None)
 @given(EXPRESSIONS)

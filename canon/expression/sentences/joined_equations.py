@@ -106,11 +106,11 @@ def _words(text: str) -> list[str]:
 def _with_semicolons(text: str, scope: Scope) -> str:
     r"""Return a text with ``;`` for the words that join two equations, or an equation and a definition."""
     depths = [*accumulate((sign in "([{") - (sign in ")]}") for sign in text)]
-    equals = [found.start() for found in _EQUALS.finditer(text)]
+    equals = [found.start() for found in _EQUALS.finditer(text) if depths[found.start()] == 0]
     signs = [*text]
     for found in _JOINT.finditer(text):
         begin, end = found.span()
-        between = equals[0] < begin and end < equals[-1] and _JOINS.search(text[:begin])
+        between = equals and equals[0] < begin and end < equals[-1] and _JOINS.search(text[:begin])
         if depths[begin] != 0 or not between or _is_name(found.group(), scope):
             continue
         if found.group().lower() in WHERE:
