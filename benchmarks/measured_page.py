@@ -300,7 +300,7 @@ SECTIONS = {
     ),
     "brouwer": Section(
         "Over the whole run the energy error grows as the root of the number of steps: Brouwer's "
-        "law, the least that rounding allows. Two steps an orbit are far above it, and wander for millions of steps.",
+        "law, the least that rounding allows. Two steps an orbit are far above it, and drift in the end.",
         (
             Table(
                 (
