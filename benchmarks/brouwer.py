@@ -1,7 +1,7 @@
 """Energy error over 10⁸ and 10⁹ steps of Kepler's motion, e = 0.2: does it grow as Brouwer's law says, and how fast?
 
-``python benchmarks/brouwer.py`` prints the stored results; ``--run`` computes and stores them anew (about forty
-minutes of processor time), ``--run Gauss`` those of methods whose names begin so, ``--run --steps 1e9`` those of so
+``python benchmarks/brouwer.py`` prints the stored results; ``--run`` computes and stores them anew (about two
+hours of processor time), ``--run Gauss`` those of methods whose names begin so, ``--run --steps 1e9`` those of so
 many steps, ``--steps 1e6 --orbits 2`` something shorter, which is not stored.
 
 Orbits of one ellipse, turned and started at random, run side by side. An energy of n steps that are wrong by
