@@ -222,9 +222,11 @@ def main() -> None:
                     print(table(problem, [row])[-1], flush=True)
             rows = [found[case.name] for case in problem.cases if case.name in found]
             tools = ", ".join(f"{tool} {version(tool)}" for tool in ("numpy", "scipy", "llvmlite", "heyoka"))
+            where = f"{date.today()}, {platform.machine()}, Python {platform.python_version()}, {tools}"
+            whole = stored.get(f"{name} run", "")
             stored |= {
                 name: rows,
-                f"{name} run": f"{date.today()}, {platform.machine()}, Python {platform.python_version()}, {tools}",
+                f"{name} run": f"{whole}; {given.case}: {where}" if given.case else where,
             }
             STORED.parent.mkdir(exist_ok=True)
             STORED.write_text(json.dumps(stored, ensure_ascii=False, indent=1), encoding="utf-8")

@@ -27,8 +27,3 @@ def test_the_repository_is_what_the_build_says():
     assert BINDER["repository"](said) == "someone/canon"
     assert BINDER["repository"]({**said, "GITHUB_REPOSITORY": "other/canon"}) == "other/canon"
     assert BINDER["repository"]({"READTHEDOCS_GIT_CLONE_URL": "https://example.org/canon.git"}) == ""
-
-
-def test_what_binder_installs_is_this_checkout_with_what_opens_the_pages():
-    listed = (Path(__file__).parents[1] / ".binder" / "requirements.txt").read_text("utf-8").split()
-    assert listed == [".[plot]", "jupyterlab", "jupytext"]

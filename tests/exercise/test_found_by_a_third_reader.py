@@ -122,8 +122,9 @@ def test_a_factor_that_holds_the_time_makes_no_constraint_rheonomic():
 
 
 AGAINST = "atan2(q, p) - atan2(2*(q + p), p - q)"
-"""Two angles about one centre, one against the other, and what makes their sum 0 on some wedges and 2π on others."""
+"""Two angles about one centre, one against the other."""
 WEDGES = f"{AGAINST} + atan((2*p**2 + p*q + q**2)/(p**2 + p*q + 2*q**2))"
+"""With a smooth third term: 0 on some wedges and 2π on others."""
 
 
 @pytest.mark.parametrize(
@@ -135,6 +136,14 @@ def test_angles_that_undo_each_other_are_no_matter_of_choice(more, due):
     identity = {"new_q": ["Q"], "new_p": ["P"], "map": {"Q": ["q"], "P": ["p"]}}
     F = f"q*P + {more.replace('p', 'P')}"
     assert said("generating-F2", q=["q"], p=["p"], **identity, F=F) == due
+
+
+@pytest.mark.parametrize(
+    ("I", "due"),
+    [("atan2(q, p) + acot(p/q) - 2*t", "holds"), ("atan2(q, p) + acot(q/p) + p**2 + q**2", "fails")],
+)
+def test_the_sense_in_which_an_arc_cotangent_winds(I, due):
+    assert said("constant-of-motion", q=["q"], p=["p"], H="(p**2 + q**2)/2", I=I) == due
 
 
 def test_phases_of_two_oscillators_may_step():

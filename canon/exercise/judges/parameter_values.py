@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import replace
-from itertools import islice
 from typing import TYPE_CHECKING, TypeAlias, cast
 
 import sympy as sp
@@ -103,8 +102,8 @@ def _judged(
     verdict = _holds_with(ask, inner, family, deadline)
     if verdict.fails:
         return _no_solution(family, verdict)
-    beside = list(_beside_exceptions(ask, reading, inner, family, wanted, deadline)) if verdict.holds else []
-    return all_hold([verdict, *beside]) if beside else verdict
+    beside = _exception(ask, reading, inner, family, wanted, deadline) if verdict.holds else None
+    return verdict if beside is None else all_hold([verdict, beside])
 
 
 def _in_time(deadline: Deadline) -> str:
@@ -244,36 +243,39 @@ def _with(inner: Reading, family: Family) -> Reading:
     return replace(inner, claim=replace(inner.claim, keys=FrozenMapping(keys)), at=FrozenMapping(family))
 
 
-def _beside_exceptions(
+def _exception(
     ask: Ask, reading: Reading, inner: Reading, family: Family, wanted: Sequence[Symbol], deadline: Deadline
-) -> Iterator[Verdict]:
-    """Yield FAILS where a value of what is left open is no solution, as an answer says nothing or has no value then.
+) -> Verdict | None:
+    """Return FAILS where a value of what is left open is no solution, as an answer says nothing or has no value then.
 
     What has to be regular, or to say something, was asked at generic values; what is left open may have every value.
     Answers may lack a value at places that are not found in closed form, as tan a does at π/2.
     """
     open_, there = [s for s in wanted if s not in family], _with(inner, family)
 
-    def exceptions(gone: Sequence[Expr], why: str) -> Iterator[Verdict]:
+    def first(gone: Sequence[Expr], why: str) -> Verdict | None:
         if not any(f.has(*open_) for f in gone):
-            return
+            return None
         for exception in families(gone, open_, _given(reading, wanted), there.domain, deadline):
             together = {s: substitute(value, exception) for s, value in family.items()} | exception
             if exception and _is_allowed(inner, together):
                 said = f"{_written(exception)} is left open, and is no solution: {why}"
-                yield Verdict(Status.FAILS, "all values", "exact", feedback=said)
+                return Verdict(Status.FAILS, "all values", "exact", feedback=said)
+        return None
 
     if not open_:
-        return
+        return None
     try:
         for question in _questions(ask, there):
-            yield from islice(exceptions(*_not_all_zero(question)), 1)
+            if (found := first(*_not_all_zero(question))) is not None:
+                return found
     except Undecided as reason:
-        yield Verdict(Status.UNDECIDED, evidence=(Evidence("open", str(reason)),))
-        return
+        return Verdict(Status.UNDECIDED, evidence=(Evidence("open", str(reason)),))
     for risk in hazards_of_answers(there):
         with suppress(Undecided):
-            yield from islice(exceptions([risk.argument], f"{risk} then"), 1)
+            if (found := first([risk.argument], f"{risk} then")) is not None:
+                return found
+    return None
 
 
 def _not_all_zero(question: Question) -> tuple[list[Expr], str]:
@@ -372,8 +374,9 @@ def _told(
     deadline: Deadline,
 ) -> tuple[str, ...] | None:
     """Return the values as they are shown; None where some that they leave open are no solutions."""
-    beside = [v for f in found for v in _beside_exceptions(ask, reading, inner, f, wanted, deadline)]
-    return None if beside else tuple(_written(family) for family in found) or ("no values",)
+    if any(_exception(ask, reading, inner, f, wanted, deadline) is not None for f in found):
+        return None
+    return tuple(_written(family) for family in found) or ("no values",)
 
 
 def _written(family: Family) -> str:

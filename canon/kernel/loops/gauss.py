@@ -38,9 +38,6 @@ if TYPE_CHECKING:
 __all__ = ["GaussIteration", "gauss_loop", "remedy", "write_gauss"]
 
 _ITERATIONS = 100
-_ONCE_MORE, _TWICE_MORE = 1, 2
-"""Iterations after the one in which no change decreased: with plain and with compensated sums."""
-
 _HALVES = 2
 """Coordinates and momenta: they are measured each by their own largest, as one may be 10¹⁰ times the other."""
 
@@ -238,8 +235,8 @@ class GaussIteration:
     def once(self, clock: str) -> None:
         """Write one iteration, and leave the loop that it stands in after the last one."""
         w, v, d, g = self.w, self.v, self.d, self.g
-        more = _TWICE_MORE if self.e else _ONCE_MORE
-        last = d.less(d.constant(Fraction(more - 1)), d.load(self.done, 0))
+        before_the_last = 1 if self.e else 0  # iterations once settled, of compensated and of plain sums
+        last = d.less(d.constant(Fraction(before_the_last)), d.load(self.done, 0))
         self._move()
         for half in range(_HALVES):
             g.store(g.constant(Fraction(0)), self.change, half)

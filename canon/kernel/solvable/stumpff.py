@@ -94,8 +94,8 @@ def _series(c: LaneFormulas, z: str, first: int) -> str:
 def _terms(first: int, mantissa: int) -> int:
     """Return how many terms to sum: the first one left out is so small that the energy does not drift by it.
 
-    It has always the same sign. Where it is a fifth of a rounding unit of the sum at REACH, steps of 0.4 periods change
-    the energy by 0.06 units a step, hidden at first by a random walk of 11 units.
+    It has always the same sign: where it is a fifth of a rounding unit of the sum at REACH, steps of a fifth of a
+    period and more make the energy drift, hidden at first by the random walk of the rounding.
     """
     limit = Fraction(1, 200 * 2**mantissa)
     return next(

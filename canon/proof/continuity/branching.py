@@ -239,7 +239,8 @@ def _whole_numbers(terms: Sequence[Expr], moving: Sequence[Symbol]) -> list[Expr
     """Return what vanishes where the argument of floor, ceiling, frac or Mod is a whole number or a multiple."""
     steps = (sp.floor, sp.ceiling, sp.frac, sp.Mod)
     found = {part for term in terms for part in term.atoms(*steps) if part.has(*moving)}
-    return [sp.sin(sp.pi * sp.Mul(u, *(1 / m for m in rest))) for u, *rest in map(arguments, found)]
+    inside = (arguments(part) for part in sorted(found, key=sp.default_sort_key))
+    return [sp.sin(sp.pi * sp.Mul(u, *(1 / m for m in rest))) for u, *rest in inside]
 
 
 def _poles_inside(terms: Sequence[Expr], moving: Sequence[Symbol], domain: Domain) -> list[Expr]:

@@ -55,7 +55,8 @@ class Cut:
     above, below
         What the function is where the gap is positive and where it is negative, near the surface.
     around
-        For an angle: what vanishes together where it has no value, so that it may wind around that place.
+        For an angle: y and x of its direction, which vanish together where it has no value, so that it may wind around
+        that place.
     bends
         Whether the function itself is continuous, as |u| is, so that only a quotient of it can jump.
     beyond
@@ -208,7 +209,7 @@ def _arcs(part: Expr) -> Iterator[Cut]:
     gap = sp.Mul(*(factor for factor in sp.Mul.make_args(zero) if not _is_root(factor)))
     if gap.free_symbols:
         turn, rest = sp.sign(other * zero / gap) * sp.pi / 2, -sp.atan(zero / other)
-        yield Cut(part, gap, rest + turn, rest - turn, (above, below))
+        yield Cut(part, gap, rest + turn, rest - turn, (other, zero))
 
 
 def _is_root(factor: Expr) -> bool:
