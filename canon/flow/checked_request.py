@@ -231,7 +231,8 @@ def _kept_system(
     parameters: frozenset[tuple[str, Fraction]],
     varying: tuple[str, ...],
 ) -> HamiltonEquations:
-    known = {symbol.name: symbol for symbol in H.free_symbols if isinstance(symbol, Symbol)}
+    held = H.free_symbols if varying else ()
+    known = {symbol.name: symbol for symbol in held if isinstance(symbol, Symbol)}
     missing = [name for name in varying if name not in known]
     if missing:
         raise KeyError(f"an array is given for {', '.join(missing)}, which H does not hold")

@@ -151,7 +151,8 @@ def _by_heyoka(
         units.system, (high, low), task.plan, method, precision, progress, so_far, units.events(looked), dense=dense,
         max_step=task.max_step,
     )  # fmt: skip
-    made = replace(made, y=units.back(made.y), carried=units.back(made.carried))
+    if units.system is not system:
+        made = replace(made, y=units.back(made.y), carried=units.back(made.carried))
     made = check_cuts(system, cuts, made, start) if cuts else made
     made = check_directions(lost, made)
     return joined(so_far, check_branch_points(branches, made))

@@ -119,8 +119,10 @@ class RepeatedSum(Expr):
 
     @cached_property
     def _held(self) -> frozenset[Any]:
-        held: frozenset[Any] = frozenset(self.term.free_symbols) - {*self.slots}
-        return held.union(*(each.free_symbols for column in self.columns for each in column))
+        held: set[Any] = self.term.free_symbols - {*self.slots}
+        arguments = {*itertools.chain(*self.columns)}
+        symbols = {each for each in arguments if isinstance(each, Symbol)}
+        return frozenset(held.union(symbols, *(each.free_symbols for each in arguments - symbols)))
 
     @property
     def depth(self) -> int:
@@ -215,15 +217,17 @@ class RepeatedSum(Expr):
 
 def sums_within(expression: Any) -> set[RepeatedSum]:
     """Return the sums in an expression, those inside other sums aside; nothing recurses, however deep it is."""
-    found: set[RepeatedSum] = set()
-    waiting, seen = [expression], set[int]()
+    if isinstance(expression, RepeatedSum):
+        return {expression}
+    found, seen = set[RepeatedSum](), set[int]()
+    waiting = [expression] if isinstance(expression, sp.Basic) else []
     while waiting:
-        current = waiting.pop()
-        if isinstance(current, RepeatedSum):
-            found.add(current)
-        elif isinstance(current, sp.Basic) and current.args and id(current) not in seen:
-            seen.add(id(current))
-            waiting.extend(current.args)
+        for each in waiting.pop().args:
+            if isinstance(each, RepeatedSum):
+                found.add(each)
+            elif each.args and id(each) not in seen:
+                seen.add(id(each))
+                waiting.append(each)
     return found
 
 

@@ -162,13 +162,19 @@ def _speed(system: HamiltonEquations, point: list[float], rates: Array) -> float
 
     A rate of q or p alone says nothing: p changes slowly far from a bump, and quickly in parts of a p of round-off.
     """
-    (q, p), (velocity, force) = np.split(abs(np.array(point[:-1])), 2), np.split(abs(rates), 2)
-    if not (q.max() > 0 and force.max() > 0):
+    n, speeds = len(system.q), rates.tolist()
+    # Of so few numbers lists are quicker than arrays.
+    q, p = _largest(point[:n]), _largest(point[n:-1])
+    velocity, force = _largest(speeds[:n]), _largest(speeds[n:])
+    if not (q > 0 and force > 0):
         return 0.0
-    if p.max() > 0:
-        ratios = velocity.max() / q.max(), force.max() / p.max()
-        return math.sqrt(ratios[0]) * math.sqrt(ratios[1])
-    pushed = [*point[: len(q)], *rates[len(q) :].tolist(), point[-1]]
+    if p > 0:
+        return math.sqrt(velocity / q) * math.sqrt(force / p)
+    pushed = [*point[:n], *speeds[n:], point[-1]]
     found = system.graph.evaluate(system.velocity, dict(zip(system.inputs, pushed, strict=True)), FLOAT64)
     gained = float(np.max(np.abs(np.array(found, float))))
-    return math.sqrt(gained / q.max()) if math.isfinite(gained) else 0.0
+    return math.sqrt(gained / q) if math.isfinite(gained) else 0.0
+
+
+def _largest(numbers: list[float]) -> float:
+    return max(map(abs, numbers))

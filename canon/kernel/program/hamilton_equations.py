@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +13,7 @@ from canon.expression.graph.graph import Graph
 from canon.expression.symbols.repeated_sum import sums_within, written_out
 from canon.frozen_mapping import FrozenMapping
 from canon.kernel.program.program import Program, exact_value, program, with_numbers
+from canon.kernel.program.repeated.gathered_rows import gathered
 from canon.kernel.program.repeated.rates_in_loops import rates_in_loops
 from canon.kernel.program.repeated.repeated_terms import KeptFunction, repeated_terms, sums_in
 from canon.kernel.program.shared_products import with_shared_products
@@ -98,6 +99,8 @@ class HamiltonEquations:
         The exactly solvable parts of a Lie–Poisson system, where a method moves it by them.
     variations
         How many variations of the motion are part of the state, behind it in q and in p.
+    whole
+        The Hamiltonian written out, where it was given so and gathered into sums.
     """
 
     written: EquationNodes | tuple[RepeatedTerms, ...]
@@ -118,13 +121,16 @@ class HamiltonEquations:
     lie_poisson: LiePoissonParts | None = None
     lagrangian: MomentaAndForces | None = None
     variations: int = 0
+    whole: Expr | None = None
 
     @cached_property
     def nodes(self) -> EquationNodes:
         """The Hamiltonian and its gradient on a graph; sums over rows are written out when this is first asked for."""
         if isinstance(self.written, EquationNodes):
             return self.written
-        whole = KeptFunction(self.written).written_out((*self.q, *self.p))
+        whole = self.whole
+        if whole is None:
+            whole = KeptFunction(self.written).written_out((*self.q, *self.p))
         return _equations(whole, self.q, self.p, self.t, self.parameters, ()).nodes
 
     @property
@@ -241,10 +247,12 @@ def equations(
     """
     q, p = tuple(q), tuple(p)
     varying = tuple(varying)
-    if sums_within(hamiltonian):
-        kept = None if varying else _of_sums(hamiltonian, q, p, t, parameters)
+    as_sums = _as_sums(hamiltonian, (*q, *p), t)
+    if as_sums is not None and not varying:
+        kept = _of_sums(as_sums, q, p, t, parameters)
         if kept is not None:
-            return kept
+            return kept if as_sums is hamiltonian else replace(kept, whole=hamiltonian)
+    if as_sums is hamiltonian:
         hamiltonian = written_out(hamiltonian)
     made = _equations(hamiltonian, q, p, t, parameters, varying)
     if made.separable or not hamiltonian.is_polynomial(*q, *p):
@@ -252,6 +260,14 @@ def equations(
     # (q + p)² − 2qp is separable only after multiplying out, which is cheap for polynomials.
     expanded = _equations(sp.expand(hamiltonian), q, p, t, parameters, varying)
     return expanded if expanded.separable else made
+
+
+def _as_sums(hamiltonian: Expr, variables: tuple[Symbol, ...], t: Symbol) -> Expr | None:
+    """Return H with sums over rows, as it was given or gathered from many terms; None where it has none."""
+    if sums_within(hamiltonian):
+        return hamiltonian
+    made = gathered(hamiltonian, variables, t)
+    return None if made is hamiltonian else made
 
 
 def _of_sums(

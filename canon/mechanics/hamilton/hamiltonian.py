@@ -76,8 +76,9 @@ class Hamiltonian:
         object.__setattr__(self, "p", coordinate_symbols(p))
         check_none_reads_as_the_time((*self.q, *self.p), "Hamiltonian(H, q, p", t)
         given = given_expression(H, "H")
-        long = any(each.is_long for each in sums_within(given))
-        object.__setattr__(self, "H", plain(given, (*self.q, *self.p), t, keep_sums=long))
+        sums = sums_within(given)
+        keep = not sums or any(each.is_long for each in sums)
+        object.__setattr__(self, "H", plain(given, (*self.q, *self.p), t, keep_sums=keep))
         object.__setattr__(self, "t", t)
         if not self.q:
             raise ValueError("no coordinates given; a system moves in at least one")

@@ -191,7 +191,7 @@ def sums_in(
 class _Reader:
     """Puts places for symbols and numbers for parameters."""
 
-    place: Mapping[Symbol, int]
+    place: Mapping[Any, int]
     t: Symbol
     parameters: Mapping[str, Fraction]
     what: str
@@ -200,13 +200,9 @@ class _Reader:
         """Return a sum as sums whose columns are all places or all numbers, or None where its arguments are other."""
         if not self.place.keys().isdisjoint(whole.term.free_symbols):
             return None
-        rows: dict[tuple[bool, ...], list[tuple[Any, ...]]] = {}
-        known: dict[Expr, Any] = {}
-        for row in whole.rows:
-            read = tuple(self._argument(each, known) for each in row)
-            if None in read:
-                return None
-            rows.setdefault(tuple(isinstance(each, int) for each in read), []).append(read)
+        rows = self._rows(whole)
+        if rows is None:
+            return None
         if whole.pairs and len(rows) > 1:
             return None
         graph = Graph()
@@ -216,9 +212,34 @@ class _Reader:
             for kinds, members in rows.items()
         ]
 
+    def _rows(self, whole: RepeatedSum) -> dict[tuple[bool, ...], list[tuple[Any, ...]]] | None:
+        """Return the arguments by whether each is a place or a number, or None where one is neither.
+
+        Nearly all are places, and there may be a hundred thousand of them.
+        """
+        read = list(
+            zip(*([self.place.get(each) for each in column] for column in whole.columns), strict=True)
+        )
+        known: dict[Expr, Any] = {}
+        rows: dict[tuple[bool, ...], list[tuple[Any, ...]]] = {}
+        places = (True,) * len(whole.columns)
+        for row, given in zip(read, whole.rows, strict=True):
+            if None not in row:
+                rows.setdefault(places, []).append(row)
+                continue
+            other = tuple(
+                self._number(each, known) if place is None else place
+                for place, each in zip(row, given, strict=True)
+            )
+            if None in other:
+                return None
+            rows.setdefault(tuple(place is not None for place in row), []).append(other)
+        return rows
+
     def of_single(self, expression: Expr) -> RepeatedTerms:
         """Return what stands beside the sums, as a sum of one row."""
-        slots = tuple(s for s in self.place if s in expression.free_symbols)
+        held = expression.free_symbols
+        slots = tuple(s for s in self.place if s in held)
         graph = Graph()
         node = self._node(graph, expression, slots)
         return RepeatedTerms(graph, node, slots, tuple(np.array([self.place[s]]) for s in slots), pairs=False)
@@ -226,10 +247,8 @@ class _Reader:
     def _node(self, graph: Graph, expression: Expr, slots: Sequence[Symbol]) -> int:
         return with_numbers(graph, expression, (*slots, self.t), self.parameters, self.what)
 
-    def _argument(self, argument: Expr, known: dict[Expr, Any]) -> Any:
-        """Return the place of a variable or the value of a number; None of what is neither."""
-        if isinstance(argument, Symbol) and argument in self.place:
-            return self.place[argument]
+    def _number(self, argument: Expr, known: dict[Expr, Any]) -> Any:
+        """Return the value of a number; None of what holds variables or the time."""
         if argument not in known:
             known[argument] = None
             held = argument.free_symbols
