@@ -105,6 +105,7 @@ html_theme = "furo"
 html_title = "canon"
 html_static_path = ["_static"]
 html_css_files = ["wide.css"]
+html_favicon = "../canon/serve/page/icon.svg"
 copybutton_prompt_text = r">>> |\.\.\. |\$ "
 copybutton_prompt_is_regexp = True
 
