@@ -14,9 +14,13 @@ from __future__ import annotations
 
 import argparse
 import math
+import os
+import platform
 import sys
 import time
 from dataclasses import dataclass, replace
+from datetime import date
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -230,6 +234,9 @@ def main() -> None:
         print(STORED.read_text(encoding="utf-8"), end="")
         return
     started = time.process_time()
+    tools = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy", "sympy", "llvmlite", "heyoka"))
+    here = f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}"
+    print(f"{date.today()}, {here}, {tools}\n")
     print(
         "error and cost: predicted, measured; cost in ms; measured over the best of the search; s it took to choose"
     )

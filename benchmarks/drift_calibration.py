@@ -4,10 +4,10 @@ Run:  python -m benchmarks.drift_calibration [series per kind, default 1000]
 
 Synthetic series (4097 samples over one run) are those of tests/study/series.py and some harder ones; real ones
 come from Hénon–Heiles orbits on random points of the section at energy 1/12, 500 periods each. "right" is the
-verdict that the kind deserves. Secular is claimed falsely in at most 1 %, a walk in about 1 % of bounded series.
-The harder kinds show where the assumptions end: noise with a memory of a twentieth of the run or more can't be told
-from a random walk by that run. Of the real series, those of symplectic methods must not be called secular, and those
-of RK4 must be.
+verdict that the kind deserves; that of a walk is wandering, as nothing is said here of rounding. Secular is claimed
+falsely in at most 1 %, a walk in about 1 % of bounded series. The harder kinds show where the assumptions end: noise
+with a memory of a twentieth of the run or more can't be told from a random walk by that run. Of the real series, those
+of symplectic methods must not be called secular, and those of RK4 must be.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ HARDER: dict[str, tuple[Growth, Callable[[np.random.Generator], series.Array]]] 
     "memory of 1/100 of the run": (Growth.BOUNDED, memory(1.0 / 100.0)),
     "1/41, as long as a window": (Growth.BOUNDED, memory(1.0 / 41.0)),
     "memory of 1/20 of the run": (Growth.BOUNDED, memory(1.0 / 20.0)),
-    "walk under equal noise": (Growth.ROUND_OFF, weak_walk),
+    "walk under equal noise": (Growth.WANDERING, weak_walk),
     "exponential": (Growth.DIVERGED, exponential),
 }
 
@@ -74,7 +74,7 @@ def kinds() -> Iterator[tuple[str, Growth, float | None, Callable[[np.random.Gen
     for name, make in series.BOUNDED.items():
         yield name, Growth.BOUNDED, None, make
     for name, make in series.ROUND_OFF.items():
-        yield name, Growth.ROUND_OFF, 0.5, make
+        yield name, Growth.WANDERING, 0.5, make
     for name, (exponent, make) in series.SECULAR.items():
         yield name, Growth.SECULAR, exponent, make
     for name, (growth, make) in HARDER.items():

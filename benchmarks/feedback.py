@@ -21,6 +21,8 @@ from typing import TYPE_CHECKING, Any
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+from days import in_words, today
+
 from canon.exercise.claim_verdict import examined
 from canon.exercise.diagnose.diagnosis_search import diagnosis
 from canon.exercise.diagnose.effort import BudgetSpent
@@ -84,6 +86,7 @@ def run(lines: Path, each: int, every: int, part: int) -> None:
     for question in questions()[part::every]:
         if question.name not in done:
             line = {"question": question.name, "kind": question.keys["kind"], "half": half_of(question)}
+            line["day"] = today()
             line["answers"] = list(tried(question, each))
             with lines.open("a", encoding="utf-8") as file:
                 print(json.dumps(line, ensure_ascii=False), file=file)
@@ -110,6 +113,7 @@ def table(found: Sequence[dict[str, Any]]) -> Iterator[str]:
             for counts, name in rows:
                 counts.setdefault(name, Counter())[answer["outcome"]] += 1
             slowest = max(slowest, answer["seconds"])
+    yield f"measured on {in_words(line['day'] for line in found)}"
     asked = sum(len(line["answers"]) for line in found)
     yield f"{asked} wrong answers to {len(found)} questions, each judged to be wrong\n"
     yield f"{'half':<32}{'':>6}  {head}"

@@ -212,6 +212,23 @@ SECTIONS = {
     "classroom": Section(
         "Two hundred students with {0} claims are judged in {1} s on two processes, and {2} verdicts "
         "differ from the truth.",
+        (
+            Table(
+                ("students", "claims", "different ones", "hold", "fail", "undecided", "can't be judged"),
+                r"^(\d+) holds, (\d+) fails, (\d+) undecided, (\d+) invalid$",
+                under=r"^(\d+) students, (\d+) claims, (\d+) different ones",
+            ),
+            Table(
+                (
+                    "s in all",
+                    "ms for each different claim",
+                    "wrong answers with feedback",
+                    "slowest claim, s",
+                ),
+                r"^wrong answers with feedback: (\d+ of \d+); slowest claim ([\d.]+) s$",
+                under=r"^(\d+) s in all, (\d+) ms for each different claim$",
+            ),
+        ),
         told=r"(\d+) claims.*?^(\d+) s in all.*?found by evaluation: (\d+)",
     ),
     "feedback": Section(
@@ -240,6 +257,30 @@ SECTIONS = {
             ),
             Table(("what", "sizes"), r"^  size +(\S.*)$", under=r"^(\w.*)$"),
         ),
+    ),
+    "sections": Section(
+        "Points of many orbits side by side lie on the section to {0}; met as events of one orbit each takes {1} times "
+        "as long, and by events of heyoka's Taylor method {2} times.",
+        (
+            Table(
+                (
+                    "points",
+                    "orbits",
+                    "steps a point",
+                    "s",
+                    "s of processor",
+                    "farthest from the section",
+                    "largest change of H",
+                ),
+                r"^  ([\d.]+) s, ([\d.]+) s of processor; largest \|x\| (\S+), largest change of H (\S+)$",
+                under=r"^(\d+) points of (\d+) orbits, (\d+) steps of",
+            ),
+            Table(
+                ("one orbit, its points met as events", "time a point, beside many orbits"),
+                r"^  events of (.*), one orbit: (\d+) times as long a point$",
+            ),
+        ),
+        told=r"largest \|x\| (\S+),.*?same method, one orbit: (\d+).*?Taylor method, one orbit: (\d+)",
     ),
     "kernels": Section(
         "Compiled loops take about as long as a C program of the same method, and less for many bodies; of many "
@@ -454,10 +495,62 @@ SECTIONS = {
         ),
     ),
     "scale_out": Section(
-        "Two processes do the work of a study in about half the time, as far as the machine lets them."
+        "Two processes run a study of {0} cases {1} times as fast as one, about as much as the machine gives two "
+        "processes that only compute, and all results are the same bit for bit.",
+        (
+            Table(
+                ("round", "one process, s", "two, s", "times as fast", "two that only compute"),
+                r"^round (\d+): one process +([\d.]+) s, two +([\d.]+) s: ([\d.]+) × "
+                r"\(the machine gives two plain processes ([\d.]+) ×\)$",
+            ),
+        ),
+        told=r"speed-up of (\d+) cases on 2 processes: ([\d.]+) ×; results equal bit for bit",
     ),
     "drift_calibration": Section(
-        "False alarms and misses of the drift statistics stay near the rates that they promise."
+        "At a level of 1 % a slope is claimed falsely in {1} % of the model's series without a walk, and in {2} % of "
+        "those with a walk as large as the scatter, which is found in {3} %. Noise with a memory of a twentieth of the "
+        "run can't be told from a walk, and is called bounded in {0} %: there the assumptions end.",
+        (
+            Table(
+                (
+                    "series",
+                    "deserves",
+                    "right, %",
+                    "bounded",
+                    "round-off",
+                    "wandering",
+                    "secular",
+                    "diverged",
+                    "undecided",
+                    "exponent in its interval",
+                ),
+                r"^(\S.*?) {2,}([a-z-]+) +" + r"([\d.]+) % +" * 6 + r"([\d.]+) %(?: +([\d.]+) %)? *$",
+            ),
+            Table(
+                (
+                    "variance of the walk over the scatter's",
+                    "told secular at the level of 1 %",
+                    "of 5 %",
+                    "slope over its error",
+                    "walk found, %",
+                ),
+                r"^ +([\d.]+|inf) +([\d.]+) % +([\d.]+) % +([\d.]+) +([\d.]+) %$",
+            ),
+            Table(
+                (
+                    "orbits of Hénon and Heiles by",
+                    "bounded, %",
+                    "round-off",
+                    "wandering",
+                    "secular",
+                    "diverged",
+                    "undecided",
+                ),
+                r"^(\S[^%]*?) {2,}" + r"([\d.]+) % +" * 5 + r"([\d.]+) %$",
+            ),
+        ),
+        told=r"^memory of 1/20 of the run +bounded +([\d.]+) %"
+        r".*?^ +0 +([\d.]+) %.*?^ +1 +([\d.]+) %[^\n]* ([\d.]+) %$",
     ),
     "robustness": Section(
         "Every attack of these ended in one of the ways that are meant, where the last column is 0.",
@@ -498,10 +591,32 @@ SECTIONS = {
         told=r"^all +\d+ +(\d+) .*?^(\d+) change what canon does, ([\d.]+) %",
     ),
     "choose": Section(
-        "The accuracy was kept in {0} cases, and the cost was within a factor of 2 of what was "
-        "foretold in {1}.",
-        (),
-        told=r"accuracy kept .*?: (\d+ of \d+).*?predicted: (\d+ of \d+)",
+        "The accuracy was kept in {0} cases, the cost was within a factor of 2 of what was "
+        "foretold in {1}, and within 1.5 times the least that a search over all methods found in {2}.",
+        (
+            Table(
+                ("over all cases", "so many", "ratios"),
+                r"^(accuracy kept|cost within [^:]*)[^:]*: (\d+ of \d+)(?:; (.*))?$",
+            ),
+            Table(
+                (
+                    "scene",
+                    "periods",
+                    "of what",
+                    "wanted",
+                    "chosen, with its step or tolerance",
+                    "error foretold",
+                    "error",
+                    "ms foretold",
+                    "ms",
+                    "over the best",
+                    "s to choose",
+                ),
+                r"^(\S+) (\de\+\d+) (\S.*?) +(1e-\d+)  (\S.*?) +[a-z]+  (\S+) (\S+) +([\d.]+) +([\d.]+) +([\d.]+)  "
+                r"\S.*? +(\d+\.\d)(?:  [A-Z ]+)?$",
+            ),
+        ),
+        told=r"accuracy kept .*?: (\d+ of \d+).*?predicted: (\d+ of \d+).*?of the search: (\d+ of \d+)",
     ),
 }
 PLAIN = Section("What was measured stands in what the script printed.")

@@ -27,6 +27,7 @@ from typing import NamedTuple
 
 sys.path.insert(0, str(Path(__file__).parent))
 
+from days import in_words
 from mutants.choice_of_tests import quickest, tests_for, tests_once_more
 from mutants.record_of_tests import Record, places_of_tests, read_record, record_place
 from mutants.sampling import Mutant, drawn, is_there, lines_of_rooms, room_of
@@ -154,6 +155,7 @@ def tell(mutants: list[Mutant], found: dict[str, Trial], said: dict[str, dict[st
     """Print the table by rooms, and what is known of every survivor."""
     rooms = {room: sum(lines.values()) for room, lines in lines_of_rooms(HOME).items()}
     counts = {room: Counter[str]() for room in rooms}
+    print(f"measured on {in_words(found[mutant.key].day for mutant in mutants)}")
     for mutant in mutants:
         counts[room_of(mutant.file)][fate(mutant, found, said)] += 1
     print(

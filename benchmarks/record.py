@@ -3,6 +3,8 @@
 python benchmarks/record.py              # every benchmark below
 python benchmarks/record.py zero_test    # this one anew, the others as they stand
 python benchmarks/record.py --page       # nothing is run: what was recorded is laid out anew
+
+Under each section stands the day on which it was measured. Results that a script keeps and prints name their own.
 """
 
 from __future__ import annotations
@@ -11,10 +13,10 @@ import platform
 import re
 import subprocess
 import sys
-from datetime import date
 from importlib.metadata import version
 from pathlib import Path
 
+from days import days_in, today
 from measured_page import section_of
 
 HERE = Path(__file__).parent
@@ -81,11 +83,18 @@ def section(name: str) -> str:
     printed = done.stdout.rstrip()
     if done.returncode:
         sys.exit(f"benchmarks/{name}.py ended with status {done.returncode}:\n{done.stderr}")
-    tools = ", ".join(f"{name} {version(name)}" for name in ("sympy", "python-flint", "llvmlite", "heyoka"))
     command = " ".join([f"{name}.py", *ARGUMENTS.get(name, [])])
-    where = f"{date.today()}, {platform.machine()}, Python {platform.python_version()}, {tools}"
-    ran = f"`python benchmarks/{command}` ({where})"
+    ran = f"`python benchmarks/{command}` ({stamp(printed)})"
     return section_of(name).page(BENCHMARKS[name], ran, printed, name)
+
+
+def stamp(printed: str) -> str:
+    """Return when and with what a benchmark ran; of a stored result, the days that its output names."""
+    stored = days_in(printed)
+    if stored:
+        return f"measured on {stored}"
+    tools = ", ".join(f"{name} {version(name)}" for name in ("sympy", "python-flint", "llvmlite", "heyoka"))
+    return f"{today()}, {platform.machine()}, Python {platform.python_version()}, {tools}"
 
 
 def laid_out_anew(found: dict[str, str]) -> None:

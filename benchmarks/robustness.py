@@ -32,6 +32,7 @@ from attacks.service import served_load
 from attacks.stores import hostile_stores
 from attacks.streams import streams
 from attacks.studies import hostile_studies
+from days import in_words
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -66,6 +67,8 @@ def main(arguments: list[str]) -> int:
         found = _attacked(sort, int(number), 1) if number else _in_pieces(sort)
         print(found, flush=True)
         bad += found.bad
+    if not number:
+        print(_measured([name] if name else [*SORTS]))
     return 1 if bad else 0
 
 
@@ -103,6 +106,14 @@ def _record(sort: str, pieces: dict[str, dict[str, Any]]) -> None:
     beside = RECORD.with_suffix(".new")
     beside.write_text(json.dumps(written, indent=1, ensure_ascii=True) + "\n", "utf-8")
     beside.replace(RECORD)
+
+
+def _measured(sorts: list[str]) -> str:
+    """Return when the recorded pieces of these sorts were done, and on which commits."""
+    written = json.loads(RECORD.read_text("utf-8"))
+    days = in_words(piece["day"] for sort in sorts for piece in written[sort]["pieces"].values())
+    commits = " and ".join(sorted({written[sort]["commit"] for sort in sorts}))
+    return f"measured on {days}, canon at commit {commits}"
 
 
 def _commit(sort: str) -> str:

@@ -22,6 +22,7 @@ HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE.parent), str(HERE)]
 
 from binder import repository, with_a_link  # noqa: E402
+from built_links import with_built_links  # noqa: E402
 from fetch_inventories import mapping  # noqa: E402
 
 from canon import __version__  # noqa: E402  (the checkout's canon, found through the line above)
@@ -104,6 +105,7 @@ html_theme = "furo"
 html_title = "canon"
 html_static_path = ["_static"]
 html_css_files = ["wide.css"]
+html_favicon = "../canon/serve/page/icon.svg"
 copybutton_prompt_text = r">>> |\.\.\. |\$ "
 copybutton_prompt_is_regexp = True
 
@@ -273,11 +275,17 @@ def link_to_binder(_: Sphinx, page: str, source: list[str]) -> None:
     source[0] = with_a_link(page, source[0], repository())
 
 
+def link_to_built_pages(_: Sphinx, page: str, source: list[str]) -> None:
+    """Lead links to scripts, the public names and the commands to the pages that are made of them."""
+    source[0] = with_built_links(page, source[0])
+
+
 def setup(app: Sphinx) -> None:
     """Write the list of public names and the commands' help before Sphinx reads them."""
     app.connect("autodoc-process-docstring", hide_colons, priority=400)  # napoleon's is 500
     app.connect("autodoc-process-docstring", show_colons, priority=600)
     app.connect("source-read", link_to_binder)
+    app.connect("source-read", link_to_built_pages)
     for name, text in (("api", public_names()), ("command_line", command_line())):
         page = HERE / "reference" / f"{name}.md"
         if not page.exists() or page.read_text(encoding="utf-8") != text:

@@ -10,6 +10,8 @@ from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass, field
 from typing import Any
 
+from days import today
+
 from canon.cli import main
 
 __all__ = ["BAD", "Count", "command", "load_is_low"]
@@ -38,6 +40,7 @@ class Count:
     first: dict[str, str] = field(default_factory=dict)
     figures: list[str] = field(default_factory=list)
     """Lines of what was measured besides."""
+    day: str = field(default_factory=today)
 
     def add(self, outcome: str, attack: str) -> None:
         self.outcomes[outcome] += 1
@@ -54,6 +57,7 @@ class Count:
             "outcomes": dict(sorted(self.outcomes.items())),
             "first": self.first,
             "figures": self.figures,
+            "day": self.day,
         }
 
     @staticmethod

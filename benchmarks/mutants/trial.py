@@ -20,11 +20,12 @@ import subprocess
 import sys
 import tempfile
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from days import today
 
 from mutants.sampling import Mutant, mutated_source
 
@@ -70,6 +71,7 @@ class Trial:
     how: str
     tests: int
     seconds: float
+    day: str = field(default_factory=today)
 
 
 def copy_of_checkout(home: Path, copy: Path) -> None:

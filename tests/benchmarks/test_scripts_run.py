@@ -22,6 +22,8 @@ SHORT = {
     "constraints": [],
     "nonholonomic": [],
     "rotations": [],
+    "classroom": [],
+    "drift_calibration": ["20"],
 }
 
 
