@@ -4,7 +4,8 @@
     python benchmarks/growth.py --quick      # without the largest size of each row
     python benchmarks/growth.py chain bodies # some rows
 
-Each size is measured once, in a process of its own, its start and imports left out. The slope is that between the two
+Each size is measured once, in a process of its own, its start and imports left out: a smaller one of its kind, half of
+the smallest, goes before it. The slope is that between the two
 largest sizes: 1 is linear. What is counted is the processor time of the process and its children.
 """
 
@@ -186,8 +187,15 @@ def claims(number: int) -> Callable[[], object]:
 
 def cases(number: int) -> Callable[[], object]:
     """A study of so many short cases, from the first to its finished status."""
-    from canon import Splitting
     from canon.study.cases.run_study import run_study
+
+    study, store = _study(number)
+    return lambda: run_study(study, store)
+
+
+def _study(number: int) -> tuple[Any, Any]:
+    """Return a study of so many cases and an empty store."""
+    from canon import Splitting
     from canon.study.cases.store import Store
     from canon.study.cases.study import Study
 
@@ -195,8 +203,52 @@ def cases(number: int) -> Callable[[], object]:
     study = Study.of(
         system="henon-heiles", start=starts, method=Splitting("verlet"), step=0.05, span=25.6, samples=256
     )
-    path = Path(tempfile.mkdtemp()) / "grows.sqlite"
-    return lambda: run_study(study, Store(path))
+    return study, Store(Path(tempfile.mkdtemp()) / "grows.sqlite")
+
+
+def _finished(number: int) -> tuple[Any, Any, Callable[[], None]]:
+    """Return the same, and what writes all of its outcomes, which are that of the first case."""
+    from dataclasses import replace
+
+    from canon.study.cases.case import key_of
+    from canon.study.cases.run_study import run_study
+    from canon.study.cases.study import Study
+
+    study, store = _study(number)
+    run_study(Study(study.cases[:1]), store)
+    (record,) = store.records().values()
+    keyed = {key_of(case): case.to_text() for case in study.cases}
+
+    def write() -> None:
+        store.add_cases(keyed)
+        for key in keyed:
+            store.save(replace(record, key=key))
+
+    return study, store, write
+
+
+def stored(number: int) -> Callable[[], object]:
+    """The inputs and outcomes of so many cases, written into the file one by one as they end."""
+    return _finished(number)[2]
+
+
+def told(number: int) -> Callable[[], object]:
+    """The status of a study of so many finished cases, ten times, and one reading of what came of all."""
+    from canon.study.cases.run_study import status_of
+
+    _, store, write = _finished(number)
+    write()
+    return lambda: ([status_of(store) for _ in range(10)], store.records())
+
+
+def resumed(number: int) -> Callable[[], object]:
+    """A study of so many cases of which all but ten are finished, run again."""
+    from canon.study.cases.run_study import run_study
+
+    study, store, write = _finished(number)
+    write()
+    store.forget([*store.records()][-10:])
+    return lambda: run_study(study, store)
 
 
 def samples(number: int) -> Callable[[], object]:
@@ -204,12 +256,12 @@ def samples(number: int) -> Callable[[], object]:
     return _pendulum(lambda H, how: how(H, (0, number / 10), [1.0, 0.0], step=0.1, samples=number))
 
 
-def orbits(number: int) -> Callable[[], object]:
+def orbits(number: int, steps: int = 100) -> Callable[[], object]:
     """So many orbits side by side for 100 steps."""
     import numpy as np
 
     starts = np.array([np.linspace(0.1, 2.0, number), np.zeros(number)])
-    return _pendulum(lambda H, how: how(H, (0, 10), starts, step=0.1, samples=1))
+    return _pendulum(lambda H, how: how(H, (0, steps / 10), starts, step=0.1, samples=1))
 
 
 def _pendulum(go: Callable[..., object]) -> Callable[[], object]:
@@ -244,6 +296,9 @@ ROWS = {
     "links": Row("links of a pendulum, L to first accelerations", (5, 10, 20, 40, 80), links),
     "claims": Row("claims of a sheet", (10, 100, 1_000, 10_000), claims),
     "cases": Row("cases of a study", (10, 100, 1_000, 10_000), cases),
+    "stored": Row("cases written to a study's file", (10, 100, 1_000, 10_000, 100_000), stored),
+    "told": Row("cases whose status is asked for", (10, 100, 1_000, 10_000, 100_000), told),
+    "resumed": Row("cases of a study that is resumed", (10, 100, 1_000, 10_000, 100_000), resumed),
     "samples": Row("samples of an orbit", (10**3, 10**4, 10**5, 10**6, 10**7), samples),
     "orbits": Row("orbits side by side, 100 steps", (1, 10, 10**2, 10**3, 10**4, 10**5, 10**6), orbits),
 }
@@ -260,10 +315,11 @@ def alone(name: str, size: int) -> float:
 
 
 def one(name: str, size: int) -> float:
-    work = ROWS[name].work(size)
-    import canon.flow.propagation
-    import canon.kernel.llvm.machine_code  # noqa: F401  loaded before it is timed
-
+    row = ROWS[name]
+    row.work(
+        row.sizes[0] // 2 or 1
+    )()  # a smaller one of its kind, so that modules are loaded before it is timed
+    work = row.work(size)
     begun = used()
     work()
     return used() - begun
@@ -283,17 +339,52 @@ def table(names: list[str], quick: bool) -> None:
         )
 
 
+def on_two_cores() -> None:
+    """Print how much sooner orbits side by side arrive on two cores than on one, in turn, the quickest of three."""
+    sizes, times = (10_000, 100_000, 1_000_000), dict[tuple[int, int], float]()
+    for size in sizes:
+        for cores in (1, 2) * 3:
+            given = [sys.executable, str(HERE), "--cores", str(cores), str(size)]
+            seconds = float(subprocess.run(given, capture_output=True, text=True, check=True).stdout)
+            times[size, cores] = min(seconds, times.get((size, cores), seconds))
+    print("orbits side by side, 1,000 steps, by the clock on one core and on two")
+    print("  size     " + "".join(f"{size:>11,}" for size in sizes))
+    for cores in (1, 2):
+        print(
+            f"  {cores} core{'s' * (cores > 1):4}" + "".join(f"{times[size, cores]:>11.3f}" for size in sizes)
+        )
+    print(
+        "  times as fast" + "".join(f"{times[s, 1] / times[s, 2]:>11.2f}" for s in sizes).removeprefix("    ")
+    )
+
+
+def on_cores(cores: int, size: int) -> float:
+    """Return the seconds by the clock that orbits take on so many cores."""
+    os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[:cores])
+    os.cpu_count = lambda: cores  # as many threads as there are cores for them
+    work = orbits(size, steps=1000)
+    work()
+    begun = time.perf_counter()
+    work()
+    return time.perf_counter() - begun
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("rows", nargs="*", choices=[*ROWS, []], help="rows of the table, all where not given")
     parser.add_argument("--quick", action="store_true", help="without the largest size of each row")
     parser.add_argument("--one", nargs=2, help=argparse.SUPPRESS)
+    parser.add_argument("--cores", nargs=2, type=int, help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.one:
         print(json.dumps(one(given.one[0], int(given.one[1]))))
-        return
-    os.environ.setdefault("PYTHONHASHSEED", "0")
-    table(given.rows or list(ROWS), given.quick)
+    elif given.cores:
+        print(on_cores(*given.cores))
+    else:
+        os.environ.setdefault("PYTHONHASHSEED", "0")
+        table(given.rows or list(ROWS), given.quick)
+        if not given.rows and not given.quick:
+            on_two_cores()
 
 
 if __name__ == "__main__":

@@ -189,7 +189,11 @@ SECTIONS = {
         (
             Table(
                 ("design", "5 links", "10 links", "20 links"),
-                r"^(?!operations)(\D.*?\D) {2,}(\d+) +(\d+)(?: +(\d+))?$",
+                r"^(?!operations|links)(\D.*?\D) {2,}(\d+) +(\d+)(?: +(\d+))?$",
+            ),
+            Table(
+                ("q̈ by the recursion that forms no M, links", "µs an evaluation"),
+                r"^of +(\d+) links +([\d.]+)$",
             ),
         ),
     ),
@@ -256,6 +260,10 @@ SECTIONS = {
                 under=r"^(\w.*)$",
             ),
             Table(("what", "sizes"), r"^  size +(\S.*)$", under=r"^(\w.*)$"),
+            Table(
+                ("orbits side by side, 1,000 steps", "10,000", "100,000", "1,000,000"),
+                r"^  (1 core|2 cores|times as fast) +([\d.]+) +([\d.]+) +([\d.]+)$",
+            ),
         ),
     ),
     "sections": Section(
@@ -303,6 +311,10 @@ SECTIONS = {
                 r"^(\S.*?) {2,}([\w-]+) +C +([\d.]+) \(.*?double +([\d.]+) \(.*?compensated +([\d.]+) "
                 r"\(.*?double-double +([\d.]+) \(",
             ),
+            Table(
+                ("in processes of their own", "processes", "least, × C", "most, × C", "median, × C"),
+                r"^(FPUT 512, verlet), in (\d+) processes: ([\d.]+) to ([\d.]+) × C, median ([\d.]+)$",
+            ),
         ),
     ),
     "roofline": Section(
@@ -318,6 +330,21 @@ SECTIONS = {
                 ("system", "method", "numbers", "orbits", "ns a step", "% of the bound", "by"),
                 r"^(\S.*?) {2,}(\S+) +(double|compensated|double-double) +(\d+) orbits? +([\d.]+) ns .* "
                 r"(\d+) % of the bound by (\w+)$",
+            ),
+        ),
+    ),
+    "waiting": Section(
+        "A command of the command line waits for Python and SymPy first; machine code that an earlier call compiled is "
+        "loaded.",
+        (
+            Table(
+                (
+                    "a fresh process",
+                    "s by the clock",
+                    "s of the processor",
+                    "s where nothing was compiled before",
+                ),
+                r"^(\S.*?) {2,}([\d.]+) +([\d.]+)(?: +([\d.]+) where .*)?$",
             ),
         ),
     ),

@@ -1,6 +1,7 @@
 """What a motion costs beside its steps: a further call, machine code compiled and loaded, energies of double-double.
 
-Processor milliseconds, medians of calls that take turns. ``python benchmarks/preparation.py``
+Processor milliseconds, medians of calls that take turns, the second of two in a row each.
+``python benchmarks/preparation.py``
 """
 
 from __future__ import annotations
@@ -80,6 +81,7 @@ def further_calls() -> None:
     taken: list[list[tuple[float, float]]] = [[] for _ in runs]
     for _ in range(TURNS):
         for (_, _, run), times in zip(runs, taken, strict=True):
+            run()  # the first of two finds caches full of what the others did
             whole, motion = milliseconds(run)
             times.append((whole, 1e3 * motion.cpu_seconds))
     for (name, method, _), times in zip(runs, taken, strict=True):

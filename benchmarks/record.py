@@ -35,6 +35,7 @@ BENCHMARKS = {
     "sections": "Poincaré sections of ensembles",
     "kernels": "Compiled loops, beside a C program",
     "roofline": "Compiled loops, beside what the processor can do",
+    "waiting": "How long one waits at a cold shell",
     "preparation": "What a motion costs beside its steps",
     "constraints": "Constraints kept by RATTLE, beside a C program",
     "nonholonomic": "Constraints on velocities kept by the nonholonomic leapfrog",
@@ -56,6 +57,7 @@ BENCHMARKS = {
 ARGUMENTS = {
     "kernels": ["--large"],
     "normal_forms": ["--large"],
+    "operations": ["--peer", "20"],
     "drift_calibration": ["200"],
     "mutation": ["--count", "520", "--seed", "1"],
     "tested_lines": ["--kept"],

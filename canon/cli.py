@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import os
 import signal
 import sys
 from contextlib import suppress
@@ -43,6 +44,11 @@ def main(argv: Sequence[str] | None = None) -> int:
         The arguments after ``canon``; those of the process unless given.
     """
     given = list(sys.argv[1:] if argv is None else argv)
+    for library in (
+        "OPENBLAS",
+        "MKL",
+    ):  # whose matrices are small here: threads would only wait for each other
+        os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     try:
         streams_open()
         status = _status(given)

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from canon.mechanics.algebra.substitution import exchanged
-from canon.proof.definedness.definedness import lack_beside, lack_of_value
 from canon.proof.domain.domain import Domain, as_domain
 from canon.proof.domain.verdict import Evidence, Status, Verdict, all_hold
 from canon.proof.kinks import off_kinks, vanishes_off_kinks
@@ -117,6 +116,8 @@ def having_values(
     """
     if not verdict.holds:
         return verdict
+    from canon.proof.definedness.definedness import lack_beside, lack_of_value
+
     domain = as_domain(domain)
     until = clock.monotonic() + VALUE_SECONDS
     open_: Verdict | None = None
