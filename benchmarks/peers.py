@@ -3,10 +3,11 @@
 For each problem, contender and accuracy: the cheapest setting tried (steps a period, or tolerance) that keeps
 max |ΔE/E| at 3137 instants below it, and the processor time a period of a run that keeps the last state only: the
 median of runs that take turns. A short run is the second of two in a row: the first finds the processor's caches full
-of what the others did. Two times are told of every contender alike, on a problem that is set up and compiled: the loop alone, which is the call that integrates, and the whole of a further call, from the numbers of a start to the
-numbers of an end: of canon ``canon.flow.prepare(…).propagate(y0)``, which checks the start and measures the energies,
-of REBOUND a copy of a simulation and its energies, and so on. Others are installed into an environment of their own,
-compiled for the machine where that can be asked for; canon needs none of them::
+of what the others did. Two times are told of every contender alike, on a problem that is set up and compiled: the loop
+alone, which is the call that integrates, and the whole of a further call, from the numbers of a start to the numbers of
+an end: of canon ``canon.flow.prepare(…).propagate(y0)``, which checks the start and measures the energies, of REBOUND a
+copy of a simulation and its energies, and so on. Others are installed into an environment of
+their own, compiled for the machine where that can be asked for; canon needs none of them::
 
     pip install galpy pyhamsys diffrax gala jitcode desolver    # jitcode needs a C compiler
     pip install numbalsoda                                      # needs a Fortran compiler
