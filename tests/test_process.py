@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 
+from canon.cli import main
 from canon.process import Child, Ended, Late, _limit_memory, _read, _write
 from canon.trusted_folders import RESTS_ON, trusted_folders
 
@@ -341,3 +342,13 @@ def test_a_message_that_was_cut_off_is_none():
     for length in range(len(sent)):
         with pytest.raises(EOFError):
             _read(io.BytesIO(sent[:length]))
+
+
+@pytest.mark.parametrize("given", [None, "3"])
+def test_small_matrices_take_one_thread_unless_someone_says_otherwise(given, monkeypatch, capsys):
+    monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
+    if given:
+        monkeypatch.setenv("OPENBLAS_NUM_THREADS", given)
+    main(["scene"])
+    assert os.environ.pop("OPENBLAS_NUM_THREADS") == (given or "1")
+    assert "kepler" in capsys.readouterr().out
