@@ -35,7 +35,7 @@ DEAR = {
         str.split, Path(__file__).with_name("dear_laws.txt").read_text(encoding="utf-8").splitlines()
     )
 }
-"""Laws of which no more examples are drawn, however many --examples asks for: it is a minute of a processor for each."""
+"""Laws of which no more examples are drawn, however many --examples asks for: a minute of a processor for each."""
 
 
 def pytest_addoption(parser):
@@ -53,7 +53,7 @@ def pytest_collection_modifyitems(config, items):
 
     Where several processes share the tests, none is left alone with it at the end.
     """
-    examples = config.getoption("examples")
+    examples = config.getoption("examples", None)
     for item in items:
         if not hasattr(getattr(item, "obj", None), "hypothesis"):
             if item.nodeid in LONG:
@@ -84,7 +84,7 @@ def pytest_runtest_call(item):
     if not hasattr(signal, "setitimer"):
         return (yield)
 
-    has_more = item.name == DOCUMENTATION or item.config.getoption("examples")
+    has_more = item.name == DOCUMENTATION or item.config.getoption("examples", None)
     left, longest = PATIENCE - 1, LONGEST * (3 if has_more else 1)
 
     def give_up(*_):
