@@ -24,22 +24,52 @@ PATIENCE = 4
 """A test may have so many times as long while more wants to run than there are processors."""
 
 DOCUMENTATION = "test_the_documentation_builds_without_warnings_from_a_fresh_clone"
-"""It executes all pages, and may have three times as long."""
+"""It executes all pages, and may have three times as long; so may a law of thousands, to make its example smaller."""
 
 LONG = frozenset(Path(__file__).with_name("long_tests.txt").read_text(encoding="utf-8").splitlines())
-"""Tests that `.ci/weigh` found to take long: they are run with the slow ones."""
+"""Tests that `.ci/weigh` found to take long: they are run with the slow ones, but for laws, which stay."""
+
+DEAR = {
+    law: int(examples)
+    for examples, law in map(
+        str.split, Path(__file__).with_name("dear_laws.txt").read_text(encoding="utf-8").splitlines()
+    )
+}
+"""Laws of which no more examples are drawn, however many --examples asks for: a minute of a processor for each."""
+
+
+def pytest_addoption(parser):
+    parser.addoption(
+        "--examples",
+        type=int,
+        metavar="N",
+        help="draw N new examples of each law, or as many as tests/dear_laws.txt says",
+    )
 
 
 @pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items):
+def pytest_collection_modifyitems(config, items):
     """Mark the tests that take long as slow, before the marks are looked at; the longest comes first.
 
     Where several processes share the tests, none is left alone with it at the end.
     """
+    examples = config.getoption("examples", None)
     for item in items:
-        if item.nodeid in LONG:
-            item.add_marker(pytest.mark.slow)
+        if not hasattr(getattr(item, "obj", None), "hypothesis"):
+            if item.nodeid in LONG:
+                item.add_marker(pytest.mark.slow)
+        elif examples:
+            draw_more(item, examples)
     items.sort(key=lambda item: item.name != DOCUMENTATION)
+
+
+def draw_more(item, examples):
+    """Have a law draw so many examples, other ones in each run."""
+    law, dear = item.obj, DEAR.get(item.nodeid.partition("[")[0], examples)
+    # Hypothesis refuses a second @settings, so that its own plugin for pytest changes them in this way too.
+    before = law._hypothesis_internal_use_settings
+    most = max(before.max_examples, min(dear, examples))
+    law._hypothesis_internal_use_settings = settings(before, max_examples=most, derandomize=False)
 
 
 def pytest_collection_finish():
@@ -54,7 +84,8 @@ def pytest_runtest_call(item):
     if not hasattr(signal, "setitimer"):
         return (yield)
 
-    left, longest = PATIENCE - 1, LONGEST * (3 if item.name == DOCUMENTATION else 1)
+    has_more = item.name == DOCUMENTATION or item.config.getoption("examples", None)
+    left, longest = PATIENCE - 1, LONGEST * (3 if has_more else 1)
 
     def give_up(*_):
         nonlocal left

@@ -61,6 +61,17 @@ def test_what_makes_no_sense_is_refused(words, capsys):
     assert words[0] in capsys.readouterr().err
 
 
+def test_a_claim_has_an_hour_at_most(capsys):
+    pytest.importorskip("uvicorn", reason="the extra 'serve' is not installed")
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        words = ["serve", "--port", str(taken.getsockname()[1]), "--budget"]
+        assert main([*words, "3600"]) == 2
+        assert "in use" in capsys.readouterr().err
+        with pytest.raises(SystemExit):
+            main([*words, "3601"])
+    assert "up to 3600" in capsys.readouterr().err
+
+
 def test_limits_that_contradict_each_other_are_refused(capsys):
     pytest.importorskip("uvicorn", reason="the extra 'serve' is not installed")
     assert main(["serve", "--claims", "300"]) == 2

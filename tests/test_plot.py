@@ -61,6 +61,14 @@ def test_guides_rise_as_their_powers(study):
     assert len(plot_energy_error(study, guides=False).lines) == len(study.rows)
 
 
+def test_guides_leave_the_right_half_of_a_picture_to_the_names(study):
+    axes = plot_energy_error(study)
+    left, right = np.log(axes.get_xlim())
+    for line in (line for line in axes.lines if line not in curves(axes)):
+        start, end = (np.log(line.get_xdata()) - left) / (right - left)
+        assert 0.0 < start < end < 0.5
+
+
 def test_names_at_the_line_ends_keep_apart(study):
     axes = plot_energy_error(study)
     axes.figure.canvas.draw()
@@ -113,6 +121,8 @@ def test_window_means_and_the_fitted_line():
     np.testing.assert_allclose(means.get_ydata() * power, found.blocks.mean)
     rise = (line.get_ydata()[-1] - line.get_ydata()[0]) / (line.get_xdata()[-1] - line.get_xdata()[0])
     assert rise * power == pytest.approx(found.slope)
+    (band,) = axes.collections
+    assert to_hex(band.get_facecolor()[0]) == to_hex(line.get_color()) != to_hex(means.get_color())
     assert axes.get_xlabel() == "time (s)"
     assert axes.get_title(loc="left").startswith("secular")
 

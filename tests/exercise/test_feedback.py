@@ -89,7 +89,7 @@ x, y, m = sp.symbols("x y m", real=True)
 RIGHT = m * x**2 / 2 - sp.sin(x) * y + sp.cos(y) * m**2
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(st.integers(0, 60))
 def test_a_repair_is_always_right(number):
     """Whatever slip was made, what is proposed equals the right expression; signs and factors are always found."""

@@ -1,6 +1,8 @@
 """Claims by which a second reader of the code had wrong verdicts, with wrong twins: forces that hold accelerations,
 systems of first order, powers, parameters, starts and implicit maps."""
 
+import time
+
 import pytest
 
 from canon.exercise.claim_verdict import InvalidClaim, judge
@@ -242,6 +244,13 @@ MEAN = "Q - q - h*(P + p)/2"
 )
 def test_of_several_solutions_the_map_near_the_identity_is_meant(equations, due):
     assert said("canonicity", **IMPLICIT, implicit=equations) == due
+
+
+def test_solutions_that_are_not_real_are_told_on_a_busy_machine_too(monkeypatch):
+    """Where a second of work takes six on the clock."""
+    clock, start = time.monotonic, time.monotonic()
+    monkeypatch.setattr(time, "monotonic", lambda: start + 6.0 * (clock() - start))
+    assert said("canonicity", **IMPLICIT, implicit=["Q**3 = 8*q**3", "2*P*Q**2 = 4*p*q**2"]) == "holds"
 
 
 @pytest.mark.parametrize(

@@ -60,7 +60,7 @@ def test_true_claims_pass_and_most_false_ones_do_not(kind):
 
 
 @given(st.integers(-3, 3), st.integers(-3, 3), st.fractions(1, 3, max_denominator=4))
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=50, deadline=None)
 def test_slopes_are_derivatives(a, b, c):
     x, y = sp.symbols("x y", real=True)
     f = sp.Function("f", real=True)
@@ -77,7 +77,7 @@ def test_slopes_are_derivatives(a, b, c):
     st.sampled_from([1, -1, 2, sp.Rational(1, 2), sp.Rational(3, 4)]),
     st.booleans(),
 )
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=50, deadline=None)
 def test_a_lost_product_of_powers_is_found(powers, factor, with_sine):
     m, l, g, theta = sp.symbols("m l g theta", positive=True)
     term = factor * m ** powers[0] * l ** powers[1] * g ** powers[2] * (sp.sin(theta) if with_sine else 1)

@@ -30,7 +30,7 @@ ATOMS = (
 )
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(st.lists(st.sampled_from(ATOMS), min_size=2, max_size=4), st.integers(1, 3), st.integers(1, 4))
 def test_expansions_against_series(atoms, order, slip):
     text = " + ".join(f"({x})*({y})" for x, y in pairwise(atoms))

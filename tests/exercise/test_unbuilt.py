@@ -48,7 +48,7 @@ def known(get, *what):
 
 
 @given(expressions())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=50, deadline=None)
 def test_values_are_those_of_the_trees(f):
     with precision(256):
         of = of_trees()
@@ -62,7 +62,7 @@ def test_values_are_those_of_the_trees(f):
 
 
 @given(expressions())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=50, deadline=None)
 def test_a_slip_in_a_term_is_what_the_difference_says(f):
     """The second route: a sum with a term multiplied is the sum and a multiple of the term besides."""
     found = {sp.expand(built(new)) for new, _ in plain_variants(f)}

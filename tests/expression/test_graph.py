@@ -84,7 +84,7 @@ def test_forward_reverse_and_sympy_derivatives_agree(f):
         assert _close(_value(graph, gradient), true)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(expressions, expressions)
 def test_derivative_laws(f, g):
     graph = Graph()

@@ -6,7 +6,7 @@ import time as clock
 
 import pytest
 import sympy as sp
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from canon import coordinates, parameters, time
@@ -21,6 +21,7 @@ from canon.expression.parse import (
 )
 from canon.expression.symbols.magnitude import has_huge_number
 from canon.expression.symbols.symbol import Momentum
+from tests.expression.test_latex_law import SLOPE_BEFORE_A_FACTOR
 
 COORDINATES = "theta theta_1 theta2 phi x y q_1 q_2 r q_12"
 PARAMETERS = "m m_1 m2 g l k a b c omega omega_0 alpha lambda A n m_eff x_bar M_s d_x delta_x"
@@ -297,11 +298,14 @@ FUNCTIONS = [
 
 
 def is_readable(f):
-    """Whether an expression has a place in the subset; SymPy prints exp(1) as a bare e, which is refused."""
+    """Whether an expression has a place in the subset.
+
+    SymPy prints exp(1) as a bare e, which is refused, and V'(x) before a factor as (V(x) f(x))', which is asked about.
+    """
     exponents = [number for power in f.atoms(sp.Pow) for number in power.exp.atoms(sp.Rational)]
     if has_huge_number(f) or any(max(abs(number.p), number.q) > 1000 for number in exponents):
         return False
-    if f.has(sp.Subs) or f.atoms(sp.And, sp.Or):
+    if f.has(sp.Subs) or f.atoms(sp.And, sp.Or) or SLOPE_BEFORE_A_FACTOR.search(sp.latex(f)):
         return False
     return not f.has(sp.E, sp.zoo, sp.nan, sp.oo, sp.S.NegativeInfinity, sp.Heaviside)
 
@@ -339,8 +343,12 @@ STYLES = [
 @settings(max_examples=150, deadline=None)
 @given(EXPRESSIONS.filter(is_readable), st.sampled_from(STYLES))
 def test_what_sympy_prints_is_read_back(f, style):
-    """In every style of its printer, and without dollars where it holds a command."""
+    """In every style of its printer, and without dollars where it holds a command.
+
+    But of K(x) beside a slash, as in x^{-3/2}, it is asked whether x is the modulus: people write so, too.
+    """
     printed = sp.latex(f, **style)
+    assume("/" not in printed or not f.has(sp.elliptic_k, sp.elliptic_e))
     for text in (f"${printed}$",) if "mode" not in style else (printed,):
         found = parse_expression(text, SCOPE)
         assert found == f or same_values(found, f), printed
@@ -379,6 +387,7 @@ def test_the_comparison_of_values_sees_a_difference():
 @settings(max_examples=60, deadline=None)
 def test_sympys_printing_of_a_nested_product_is_not_swallowed_by_a_function(f):
     product = sp.Mul(sp.sin(X), sp.log(Y) ** 2, sp.cos(THETA) ** 3, f, evaluate=False)
+    assume(not SLOPE_BEFORE_A_FACTOR.search(sp.latex(product)))
     found = parse_expression(f"${sp.latex(product)}$", SCOPE)
     assert found == product.doit(deep=False) or same_values(found, product)
 

@@ -15,7 +15,8 @@ from tests.expression.test_typed_latex import agree
 
 WHICH_REACH = "the derivative of what?"
 SLOPE_BEFORE_A_FACTOR = re.compile(
-    r"\\frac\{d\}\{d x\} V\{\\left\(x \\right\)\} ?(?![ +\-&,}]|\\right|\\\\|$)"
+    r"\\frac\{(?:d|\\partial)(?:\^\{\d\})?\}\{[^{}]*(?:\{\d\}[^{}]*)*\} \w+\{\\left\([^()]*\\right\)\}"
+    r" ?(?![ +\-&,}]|\\right|\\\\|$)"
 )
 THETA, X, Y = (Coordinate(name, real=True) for name in ("theta", "x", "y_1"))
 P = Momentum("p_theta", real=True)
@@ -82,7 +83,7 @@ def read_back(expression):
     return found == expression or agree(*(f.subs(V, CUBE).doit() for f in (found, expression)))
 
 
-@settings(max_examples=20, suppress_health_check=list(HealthCheck), deadline=None)
+@settings(max_examples=50, suppress_health_check=list(HealthCheck), deadline=None)
 @given(EXPRESSIONS)
 def test_what_sympy_prints_is_read_back(expression):
     assume(not expression.has(*NO_WORDS_FOR))
@@ -92,14 +93,6 @@ def test_what_sympy_prints_is_read_back(expression):
 def test_the_number_e_joins_no_equations_that_stand_in_other_places():
     assert read_back(piecewise((slope_at(X), 2 * sp.E)))
     assert not agree(*(piecewise((slope_at(X), k * sp.E)).subs(V, CUBE).doit() for k in (2, 3)))
-
-
-@pytest.mark.slow
-@settings(max_examples=3000, suppress_health_check=list(HealthCheck), deadline=None)
-@given(EXPRESSIONS)
-def test_what_sympy_prints_is_read_back_of_thousands(expression):
-    assume(not expression.has(*NO_WORDS_FOR))
-    assert read_back(expression), sp.latex(expression)
 
 
 @pytest.mark.parametrize(

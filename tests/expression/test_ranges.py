@@ -83,7 +83,7 @@ integrands = st.lists(
 )
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(integrands, st.integers(-3, 3), st.integers(-3, 3))
 def test_integrals_agree_with_quadrature(parts, lower, upper):
     f = sp.Add(*parts)

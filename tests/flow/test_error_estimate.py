@@ -1,5 +1,7 @@
 """What a trajectory says of its own error bounds the true one, which closed forms and 40 digits know."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -20,6 +22,7 @@ from canon import (
     time,
 )
 from canon.flow import AccuracyWarning, NonFiniteStateError
+from canon.flow.estimate.companion import CompanionTask
 
 x, y = coordinates("x y")
 KEPLER = Hamiltonian(
@@ -260,3 +263,12 @@ def test_a_small_coordinate_beside_a_large_momentum(method):
                 [0, *(place for place in (mpf(3) / 16, mpf(1)) if place < end), end],
             )
             assert abs(found - true) <= stated
+
+
+def test_twice_a_rounding_of_the_largest_number_is_cut_off_from_series_that_are_there():
+    """And nothing of a coordinate that stays zero."""
+    taylor = SimpleNamespace(plan=SimpleNamespace(h=None))
+    scale, y = np.array([3.0, 0.0, 5.0, 1.0]).reshape(4, 1, 1), np.ones((4, 2, 1))
+    y[1] = 0.0
+    cut = CompanionTask(taylor, "in doubles", 1e-16).truncation(scale, y)
+    assert cut.ravel().tolist() == [1e-15, 0.0, 1e-15, 1e-15]

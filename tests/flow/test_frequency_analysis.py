@@ -39,7 +39,7 @@ def test_lines_are_found_to_the_digits_that_are_stated():
     np.testing.assert_allclose(rebuilt, signal(t).real, atol=1e-8)
 
 
-@settings(max_examples=20)
+@settings(max_examples=50)
 @given(
     frequency=st.floats(-6, 6),
     size=st.floats(0.05, 20),

@@ -32,7 +32,7 @@ FROESCHLE = HamiltonianMap(
 )
 
 
-@settings(max_examples=25)
+@settings(max_examples=50)
 @given(start=st.tuples(*[st.floats(-3, 3)] * 2), strength=st.floats(0.125, 2), count=st.integers(1, 8))
 def test_it_is_iterated_as_it_is_written_down(
     start: tuple[float, float], strength: float, count: int

@@ -216,7 +216,7 @@ def by_hand(walls, start, until):
             at, p, now = mpmath.mpf(wall), p + F * step, now + step
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(
     st.lists(
         st.tuples(st.integers(-4, 4), st.integers(1, 4)), min_size=1, max_size=3, unique_by=lambda w: w[0]

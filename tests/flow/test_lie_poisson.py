@@ -506,7 +506,7 @@ numbers = st.floats(-2, 2).map(lambda z: round(z, 3))
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::canon.AccuracyWarning")
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(
     inertia=st.lists(st.floats(0.2, 5).map(lambda z: round(z, 2)), min_size=3, max_size=3),
     weights=st.lists(numbers, min_size=3, max_size=3),

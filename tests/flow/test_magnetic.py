@@ -326,7 +326,7 @@ factors = st.integers(-3, 3)
 
 
 @pytest.mark.slow
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(
     first=st.lists(factors, min_size=5, max_size=5),
     second=st.lists(factors, min_size=5, max_size=5),

@@ -72,7 +72,7 @@ def test_backwards_in_time_the_same_surface_is_passed() -> None:
     assert back.t[:count] == pytest.approx(there.t[::-1], abs=1e-10)
 
 
-@settings(max_examples=10)
+@settings(max_examples=50)
 @given(orbits=st.integers(1, 40), seed=st.integers(0, 2**32 - 1), points=st.integers(1, 6))
 def test_an_ensemble_has_the_bits_of_its_orbits(orbits: int, seed: int, points: int) -> None:
     draw = np.random.default_rng(seed)

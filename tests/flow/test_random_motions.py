@@ -76,7 +76,7 @@ def stays(case: RandomMotion) -> bool:
     return bool(np.isfinite(reference(case, np.array(case.span)).astype(float)).all())
 
 
-@usual(8)
+@usual(5)  # a second each: a motion, and the same in wider numbers
 @given(random_motions(), st.sampled_from([name for name in METHODS if name not in ("quad", "extended")]))
 def test_what_is_stated_is_kept(case: RandomMotion, name: str) -> None:
     assume(case.separable or name not in FOR_SEPARABLE)

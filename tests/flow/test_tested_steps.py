@@ -96,6 +96,14 @@ def test_what_a_step_has_missed_counts_in_parts_of_its_larger_end(start: float, 
     assert missed == (0.0 if is_good else pytest.approx(10 * 20 * c / (1e-16 * abs(start)), rel=1e-2))
 
 
+@pytest.mark.parametrize(("made", "halvings"), [(31, 1), (32, 0)])
+def test_halvings_no_longer_count_after_many_good_steps(made: int, halvings: int) -> None:
+    trial = tested_steps._Trial()
+    trial.failed(1e6)
+    trial.succeeded(made)
+    assert trial.halvings == halvings
+
+
 def test_late_times_do_not_look_like_steps_too_long() -> None:
     """The lengths of steps are differences of rounded times; here they are right to seven digits."""
     H = well(16, x**2 / 2)

@@ -53,7 +53,7 @@ def drawn(seed, size, reach):
 
 
 @pytest.mark.parametrize(("size", "reach"), SIZES)
-@settings(max_examples=15)
+@settings(max_examples=50)
 @given(seed=st.integers(0, 10**6))
 def test_solutions_are_those_of_numpy(size, reach, seed):
     matrix, right = drawn(seed, size, reach)

@@ -45,7 +45,7 @@ def test_lowering_keeps_the_value(f):
     assert abs(direct - through) < 1e-30 * (1 + abs(direct))
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(expressions)
 def test_machine_code_computes_the_program(f):
     steps = lowered(f)

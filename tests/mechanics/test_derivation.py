@@ -250,7 +250,7 @@ def test_heads_and_tails_take_one_addition_each():
 POINTS = st.floats(0.2, 2.0)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(a=POINTS, b=POINTS)
 def test_python_source_is_what_the_graph_evaluates(a, b):
     graph = Graph()
@@ -275,7 +275,7 @@ def test_python_source_refuses_what_has_no_value():
     assert python_function(graph, [graph.zero], [])(()) == (0.0,)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(st.integers(1, 6), st.integers(0, 10**6))
 def test_factorisation_solves(n, seed):
     chance = np.random.default_rng(seed)

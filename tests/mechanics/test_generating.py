@@ -334,7 +334,7 @@ def test_rules_without_a_formula_are_tested_and_evaluated():
 small = st.integers(-2, 2)
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(st.integers(1, 3), small, small, small, small)
 def test_generated_functions_come_back_from_their_maps(s, a, b, c, d):
     """F₂ = s qP + a q³ + b q² + c P² + d P sin t → map → F₂, up to a function of t."""

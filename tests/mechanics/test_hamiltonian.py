@@ -65,7 +65,7 @@ def test_hamiltons_equations_are_lagranges(name):
 coefficients = st.integers(-3, 3)
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(st.lists(coefficients, min_size=8, max_size=8))
 def test_round_trip_of_generated_lagrangians(n):
     """Positive definite mass matrices A Aᵀ + 1 with linear and potential terms."""

@@ -52,7 +52,7 @@ def test_where_two_branches_meet_none_is_chosen():
     assert beside.conditions == [2 * x + 1 < 0]
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=50, deadline=None)
 @example(["quadratic"], 38)
 @example(["cosh", "cosh", "cosh"], 35)
 @example(["square", "fraction", "quadratic"], 0)

@@ -267,7 +267,7 @@ def test_routh_of_the_relativistic_particle():
 SMALL = st.integers(-3, 3)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(st.lists(SMALL, min_size=6, max_size=6), st.integers(1, 4), st.integers(1, 4))
 def test_reduction_of_generated_systems(numbers, one, two):
     """L = ½(A ẋ² + 2B ẋẏ + C ẏ²) + Eẏ − V in functions of x: Routh's equation is Lagrange's at constant p."""

@@ -19,7 +19,7 @@ COEFFICIENTS = st.integers(-3, 3)
 
 
 @given(st.lists(COEFFICIENTS, min_size=3, max_size=3), COEFFICIENTS, COEFFICIENTS)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=50, deadline=None)
 def test_an_affine_function_is_what_its_slopes_and_rest_make_of_it(numbers, k, l):
     a, b, c = numbers
     f = (a + k * z**2) * x + (b * y + c) * (1 + l * z) - k * y * (z - 1)

@@ -174,7 +174,7 @@ def test_kinks_poles_and_right_branches_do_not_jump(f):
     assert (found.holds, found.assumed) == (True, ())
 
 
-@settings(max_examples=25)
+@settings(max_examples=50)
 @given(cut=whole, slope=whole, offset=whole)
 def test_two_straight_pieces_jump_unless_they_meet(cut, slope, offset):
     pieces = Piecewise((2 * x, x > cut), (slope * x + offset, True))
@@ -184,7 +184,7 @@ def test_two_straight_pieces_jump_unless_they_meet(cut, slope, offset):
     assert continuity(pieces, [x], Domain((x > 3,))).holds
 
 
-@settings(max_examples=25)
+@settings(max_examples=50)
 @given(rate=st.integers(1, 40), shift=whole, slope=whole)
 def test_the_place_and_height_of_every_step_of_a_staircase(rate, shift, slope):
     f = slope * x + atan(tan(rate * x + shift))
@@ -196,7 +196,7 @@ def test_the_place_and_height_of_every_step_of_a_staircase(rate, shift, slope):
     assert abs(before - after - mp.pi) < 1e-6
 
 
-@settings(max_examples=25)
+@settings(max_examples=50)
 @given(a=whole, b=whole, c=st.integers(1, 3))
 def test_one_sided_limits_agree_with_values_beside_the_jump(a, b, c):
     f = (x**2 + b) * sign(c * x - a) + x * Max(x - b, 0)

@@ -128,7 +128,7 @@ def test_beyond_the_unit_parameter_the_amplitude_swings_and_is_no_inverse():
     st.fractions(-20, 20, max_denominator=97),
     st.fractions(-3, 3, max_denominator=97).filter(lambda x: x not in (0, 1)),
 )
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=50)
 def test_balls_hold_the_values_of_another_library(f, argument, parameter):
     """The nome's quotients of theta functions against mpmath's descending transformations."""
     point = {u: sp.Rational(argument), m: sp.Rational(parameter)}

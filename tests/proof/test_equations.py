@@ -1,12 +1,13 @@
 """Systems of equations: the same solutions or not."""
 
 import time
+from types import SimpleNamespace
 
 import pytest
 import sympy as sp
 from sympy import Function, cos, sin
 
-from canon.proof import equivalent_equations
+from canon.proof import equivalence, equivalent_equations
 from canon.proof.domain.domain import EVERYWHERE
 from canon.proof.domain.verdict import Status
 from canon.proof.equivalence import _refuted_in_a_regime
@@ -109,3 +110,22 @@ def test_pieces_that_turn_on_the_unknowns_are_not_looked_at_one_by_one():
         [abs(x_acc) + x_acc - 2 * l], [x_acc - l], [x_acc], EVERYWHERE, time.monotonic() + 5, str
     )
     assert folded is None
+
+
+def test_determinants_share_the_budget_and_each_is_looked_at(monkeypatch):
+    """The second and third after a second each, the others when all of it is spent."""
+    now, budgets = 100.0, []
+
+    def noted(f, domain, budget):
+        nonlocal now
+        budgets.append(budget)
+        now += 1.0 if len(budgets) < 3 else 9.0
+        return vanishes(f, domain)
+
+    vanishes = equivalence.vanishes
+    monkeypatch.setattr(equivalence, "vanishes", noted)
+    monkeypatch.setattr(equivalence, "time", SimpleNamespace(monotonic=lambda: now))
+    combined = [PENDULUM[0] - PENDULUM[1], PENDULUM[0] + PENDULUM[1]]
+    assert equivalent_equations(PENDULUM, combined, [x_acc, phi_acc], budget=4.0).holds
+    assert budgets[:4] == [4.0, 3.0, 2.0, 0.1]
+    assert set(budgets[4:]) <= {0.1}

@@ -3,10 +3,32 @@
 import math
 
 import pytest
-from sympy import Abs, E, I, Pow, Rational, cos, cosh, diff, exp, sin, sinh, sqrt, symbols, tan
+from sympy import (
+    Abs,
+    E,
+    I,
+    Integer,
+    Pow,
+    Rational,
+    cos,
+    cosh,
+    diff,
+    exp,
+    factorial,
+    log,
+    sin,
+    sinh,
+    sqrt,
+    symbols,
+    tan,
+)
 
 from canon.expression.symbols.magnitude import digits, has_huge_number
 from canon.proof import Domain, equal
+from canon.proof.domain.limits import TooLarge
+from canon.proof.functions.large_powers import LARGEST_EXPONENT
+from canon.proof.tower.tower import LARGEST_POWER, Tower
+from canon.proof.trees.replacement import LARGEST_WRITTEN, NoValue, replaced
 
 x, y = symbols("x y", real=True)
 
@@ -69,3 +91,36 @@ def test_a_power_of_e_is_as_long_as_the_exponential_function(exponent: int) -> N
     assert power.func is Pow
     assert digits(power) == pytest.approx(exponent * math.log10(math.e), rel=1e-12)
     assert has_huge_number(x + power) is (exponent > 10**5)
+
+
+@pytest.mark.parametrize("terms", [1, 2])
+def test_powers_that_flint_would_not_come_back_from_are_refused(terms):
+    tower = Tower()
+    base = tower.monomial(tower.generator("x")) + (terms - 1)
+    assert len(tower.polynomial_power(base, LARGEST_POWER)) == (1 if terms == 1 else LARGEST_POWER + 1)
+    with pytest.raises(TooLarge, match=f"the power {LARGEST_POWER + 1}"):
+        tower.polynomial_power(base, LARGEST_POWER + 1)
+
+
+def test_a_polynomial_of_a_huge_degree_is_not_listed_by_its_coefficients():
+    tower = Tower()
+    x = tower.generator("x")
+    listed = tower.coefficients(tower.monomial(x, LARGEST_POWER) + 3, x)
+    assert [listed[0], listed[-1], len(listed)] == [3, 1, LARGEST_POWER + 1]
+    with pytest.raises(TooLarge, match=f"the degree {LARGEST_POWER + 1}"):
+        tower.coefficients(tower.monomial(x, LARGEST_POWER + 1) + 3, x)
+
+
+def test_a_power_beyond_all_that_are_meant_is_not_factored():
+    for exponent, is_decided in ((LARGEST_EXPONENT, True), (LARGEST_EXPONENT + 2, False)):
+        assert equal(((x + y) * (x - y)) ** exponent, (x**2 - y**2) ** exponent).holds is is_decided
+
+
+@pytest.mark.parametrize("f", [x**y, factorial(x), exp(x * log(y))], ids=str)
+def test_numbers_of_thousands_of_digits_are_not_written_out(f):
+    """SymPy would write out 3**(10**9)."""
+    exponent, base = (y, x) if f == x**y else (x, y)
+    put_in = {exponent: Integer(LARGEST_WRITTEN), base: Integer(3)}
+    assert digits(replaced(f, put_in)) > 400
+    with pytest.raises(NoValue):
+        replaced(f, put_in | {exponent: Integer(LARGEST_WRITTEN + 1)})

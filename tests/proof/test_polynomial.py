@@ -11,7 +11,7 @@ x, y, z = sp.symbols("x y z")
 IRREDUCIBLE = [x, y, x + y, x**2 + 1, x * y - 2, x + z**2, sp.sin(x) + y, sp.cos(z) - 3]
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(st.lists(st.sampled_from(IRREDUCIBLE), min_size=1, max_size=5), st.integers(1, 9))
 def test_the_factors_of_a_product_are_found_again(factors, number):
     found = polynomial_factors(sp.expand(sp.Rational(number, 7) * sp.Mul(*factors)))

@@ -69,7 +69,7 @@ def test_changed_identities_are_never_proved(e, f, rewritten, delta):
     assert not vanishes(e - rewritten(e, f) + delta, budget=2.0).holds
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(st.lists(st.sampled_from([x > 0, x < 2, y > x, y < 5, x + y > 1]), max_size=3, unique=True))
 def test_points_lie_in_the_domain(conditions):
     domain = Domain(conditions=tuple(conditions), box={x: (Rational(-4), Rational(4))})

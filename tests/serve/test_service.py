@@ -195,6 +195,11 @@ def test_other_paths_methods_and_names(client):
     assert client.get("/health", headers={"Host": "localhost:8000"}).status_code == 200
 
 
+def test_a_hundred_letters_are_told_of_a_name_that_is_not_that_of_the_service(client):
+    told = client.get("/health", headers={"Host": "a" * 99 + "bc"}).json()["detail"]
+    assert told.startswith(f"this service is not called '{'a' * 99}b';")
+
+
 def test_every_answer_forbids_what_the_page_does_not_need(client):
     for path in ("/", "/page.js", "/page.css", "/icon.svg", "/api", "/openapi.json", "/health", "/nothing"):
         answer = client.get(path)

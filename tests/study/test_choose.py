@@ -22,7 +22,7 @@ from canon.study.method_choice import candidate
 from canon.study.method_choice.candidate import HOPELESS, by_order, candidate_methods, tried_with
 from canon.study.method_choice.choice_question import Question
 from canon.study.method_choice.error_law import expected_error
-from canon.study.method_choice.pilot_run import Pilot, pilot, seconds_per_time
+from canon.study.method_choice.pilot_run import Pilot, natural_step, pilot, seconds_per_time
 from canon.study.method_choice.resolution import least_error
 from canon.study.method_choice.tolerance_search import tolerance_at
 from tests.flow.test_tangent_maps import chain
@@ -433,3 +433,14 @@ def test_only_the_first_step_of_a_method_is_timed(monkeypatch):
     assert second.cost == pytest.approx(2 * first.cost, rel=0.01)
     # So it is where it is timed.
     assert 0.4 < candidate.tried_with(question, second.pilot.setting, 200.0).cost / second.cost < 2.5
+
+
+def test_a_first_run_grows_by_eight_until_it_tells_how_long_four_hundred_steps_are():
+    spans, steps = [], iter((29, 30, 300))
+
+    def run(setting, span, samples):
+        spans.append(span)
+        return SimpleNamespace(steps=next(steps))
+
+    assert natural_step(SimpleNamespace(span=2.0**20, run=run)) == spans[-1] / 300
+    assert spans == [1.0, 8.0, pytest.approx(8.0 * 400 / 30)]

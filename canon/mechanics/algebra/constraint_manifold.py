@@ -47,8 +47,9 @@ __all__ = [
 ]
 
 MAX_BRANCHES = 16
-VALUE_SECONDS = 0.5
-"""Time for the question whether a constraint has a value on a branch."""
+SECONDS = 5.0
+"""Last safety of the questions whether a constraint has a value on a branch, and whether a domain holds a point: they
+end by themselves after a tenth of a second, which is more on the clock of a busy machine."""
 
 _NO_POINT = "no point satisfies the constraints, assumptions and conditions"
 
@@ -137,7 +138,7 @@ def on_manifold(
 def _without_value(constraint: Expr, branch: Branch) -> bool:
     """Whether a constraint has a value nowhere on a branch: zeros of its denominators are no solutions of it."""
     there = put_in(constraint, dict(branch.values.items()))
-    lack = lack_of_value(there, branch.domain, time.monotonic() + VALUE_SECONDS)
+    lack = lack_of_value(there, branch.domain, time.monotonic() + SECONDS)
     return lack is not None and lack.proved
 
 
@@ -246,7 +247,7 @@ def transported(domain: Domain, values: Mapping[Symbol, Expr]) -> Domain:
 
 def _without_point(domain: Domain) -> bool:
     """Whether it is proved that a domain holds no point."""
-    return not has_point(domain) and is_empty(domain, time.monotonic() + 0.5)
+    return not has_point(domain) and is_empty(domain, time.monotonic() + SECONDS)
 
 
 def _signs(symbol: Symbol, value: Expr) -> Iterator[Boolean]:

@@ -44,7 +44,7 @@ def misses(ball, formula):
 
 
 @given(small, small, small, small)
-@settings(deadline=None, max_examples=6)
+@settings(deadline=None, max_examples=30)  # a sixth of a second each: two integrals in balls
 def test_the_oscillator_has_the_action_energy_over_frequency(mass, frequency, place, momentum):
     found = action_variables(OSCILLATOR, {q: place, p: momentum}, {m: mass, w: frequency})
     E = momentum**2 / (2 * mass) + mass * frequency**2 * place**2 / 2

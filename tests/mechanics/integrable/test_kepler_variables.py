@@ -174,7 +174,7 @@ def test_circular_orbits_have_poincares_variables():
 
 
 @given(rational, rational, st.floats(-1, 1))
-@settings(deadline=None, max_examples=20)
+@settings(deadline=None, max_examples=50)
 def test_poincares_variables_are_smooth_at_circular_orbits(radius, strength, longitude):
     M = JACOBIAN(float(strength), float(radius), longitude, 0.0, float(sp.sqrt(strength * radius)))
     assert np.max(np.abs(M @ J @ M.T - J)) < 1e-13

@@ -128,7 +128,7 @@ coefficient = st.fractions(-3, 3, max_denominator=4).map(lambda f: sp.Rational(f
 
 
 @given(st.lists(coefficient, min_size=9, max_size=9), st.tuples(st.integers(1, 4), st.integers(-4, 4)))
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=50, deadline=None)
 def test_generated_hamiltonians(numbers, frequencies):
     w1, w2 = frequencies
     if w2 == 0:

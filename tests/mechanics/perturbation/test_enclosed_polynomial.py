@@ -66,7 +66,7 @@ def added(f, g):
     return {k: tuple(x + y for x, y in zip(f.get(k, zero), g.get(k, zero), strict=True)) for k in {*f, *g}}
 
 
-@settings(max_examples=30)
+@settings(max_examples=50)
 @given(exact_ones, exact_ones, numbers, st.integers(1, 9))
 def test_every_operation_encloses_the_exact_result(f, g, number, divisor):
     F, G = enclosed(f), enclosed(g)

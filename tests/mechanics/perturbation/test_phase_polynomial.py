@@ -44,7 +44,7 @@ def polynomial(ring, unit, given_terms):
 
 
 @given(st.sampled_from(sorted(FIELDS)), terms, terms)
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=50, deadline=None)
 def test_sums_products_and_brackets_are_those_of_sympy(name, first, second):
     ring, unit = FIELDS[name]
     (f, f_shown), (g, g_shown) = polynomial(ring, unit, first), polynomial(ring, unit, second)
