@@ -7,7 +7,9 @@ on the whole ball.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import operator
+from functools import reduce
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import sympy as sp
 from flint import acb, arb
@@ -16,7 +18,7 @@ from sympy import Expr, Symbol
 from canon.proof.domain.balls import value
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
 __all__ = ["BallFunction", "NotHolomorphicError"]
 
@@ -38,6 +40,10 @@ ENTIRE: dict[Any, Callable[[acb], acb]] = {
 """Functions without branch cuts; at poles their balls are not finite."""
 
 NOWHERE = acb("nan")
+
+_Two: TypeAlias = "Callable[[acb, acb], acb]"
+_Step: TypeAlias = "Callable[[tuple[acb, acb], bool], acb]"
+"""Operations of one or two operands, whether they have to be holomorphic; of one it stands there twice."""
 
 
 class NotHolomorphicError(ValueError):
@@ -71,42 +77,52 @@ class BallFunction:
 
     def __init__(self, f: Expr, variable: Symbol, values: Mapping[Symbol, acb]) -> None:
         self.f = f
-        self._constants: list[acb] = []
-        self._steps: list[tuple[int, tuple[int, ...], Callable[[list[acb], bool], acb]]] = []
-        self._places: dict[sp.Basic, int] = {}
         self._variable, self._values = variable, values
+        self._constants: list[acb] = [NOWHERE]
+        self._steps: list[tuple[int, _Two | None, int, int, _Step | None]] = []
+        self._places: dict[sp.Basic, int] = {variable: 0}
         self._last = self._place(f)
 
     def __call__(self, z: acb, analytic: bool = False) -> acb:
         """Return the value on a ball; not finite where ``analytic`` and not certainly holomorphic there."""
-        memory = list(self._constants)
-        for place, arguments, step in self._steps:
-            memory[place] = step([memory[i] for i in arguments], analytic) if arguments else z
+        memory = self._constants.copy()
+        memory[0] = z
+        for place, two, i, j, step in self._steps:
+            if step is None:
+                memory[place] = two(memory[i], memory[j])  # pyright: ignore[reportOptionalCall]
+            else:
+                memory[place] = step((memory[i], memory[j]), analytic)
         return memory[self._last]
 
     def _place(self, node: sp.Basic) -> int:
         known = self._places.get(node)
-        if known is not None:
-            return known
-        if node == self._variable:
-            return self._kept(node, NOWHERE, ((), _product))
-        if not node.has(self._variable):
-            return self._kept(node, _constant(node, self._values), None)
-        arguments = tuple(self._place(a) for a in _operands(node))
-        return self._kept(node, NOWHERE, (arguments, _operation(node)))
+        if known is None:
+            known = self._places[node] = self._new_place(node)
+        return known
 
-    def _kept(
-        self,
-        node: sp.Basic,
-        constant: acb,
-        step: tuple[tuple[int, ...], Callable[[list[acb], bool], acb]] | None,
-    ) -> int:
-        place = len(self._constants)
-        self._constants.append(constant)
-        if step is not None:
-            self._steps.append((place, *step))
-        self._places[node] = place
+    def _new_place(self, node: sp.Basic) -> int:
+        if not node.has(self._variable):
+            return self._kept(_constant(node, self._values))
+        if isinstance(node, sp.Add | sp.Mul):
+            return self._two_by_two(node.args, operator.add if isinstance(node, sp.Add) else operator.mul)
+        operands = [self._place(each) for each in _operands(node)]
+        return self._added(None, operands[0], operands[-1], _operation(node))
+
+    def _two_by_two(self, operands: Sequence[sp.Basic], two: _Two) -> int:
+        """Return the place of a sum or product: of what is constant once, then of each of the others."""
+        still = [_constant(each, self._values) for each in operands if not each.has(self._variable)]
+        places = [self._kept(reduce(two, still))] if still else []
+        places += [self._place(each) for each in operands if each.has(self._variable)]
+        return reduce(lambda i, j: self._added(two, i, j), places)
+
+    def _added(self, two: _Two | None, i: int, j: int, step: _Step | None = None) -> int:
+        place = self._kept(NOWHERE)
+        self._steps.append((place, two, i, j, step))
         return place
+
+    def _kept(self, constant: acb) -> int:
+        self._constants.append(constant)
+        return len(self._constants) - 1
 
 
 def _constant(node: sp.Basic, values: Mapping[Symbol, acb]) -> acb:
@@ -127,11 +143,7 @@ def _operands(node: sp.Basic) -> tuple[sp.Basic, ...]:
     return node.args
 
 
-def _operation(node: sp.Basic) -> Callable[[list[acb], bool], acb]:
-    if isinstance(node, sp.Add):
-        return _sum
-    if isinstance(node, sp.Mul):
-        return _product
+def _operation(node: sp.Basic) -> _Step:
     if isinstance(node, sp.Pow) and isinstance(node.exp, sp.Rational):
         return _rational_power(node.exp, modulus=isinstance(node.base, sp.Abs))
     if isinstance(node, sp.Pow):
@@ -149,17 +161,17 @@ def _operation(node: sp.Basic) -> Callable[[list[acb], bool], acb]:
     )
 
 
-def _entire(function: Callable[[acb], acb]) -> Callable[[list[acb], bool], acb]:
-    def applied(arguments: list[acb], _analytic: bool) -> acb:
+def _entire(function: Callable[[acb], acb]) -> _Step:
+    def applied(arguments: tuple[acb, acb], _analytic: bool) -> acb:
         return function(arguments[0])
 
     return applied
 
 
-def _of_sides(*, modulus: bool) -> Callable[[list[acb], bool], acb]:
+def _of_sides(*, modulus: bool) -> _Step:
     """Return |z| or sign z of a real z, continued from each side of zero: ±z and ±1."""
 
-    def applied(arguments: list[acb], analytic: bool) -> acb:
+    def applied(arguments: tuple[acb, acb], analytic: bool) -> acb:
         z = arguments[0]
         if z.real > 0 or z.real < 0:
             side = 1 if z.real > 0 else -1
@@ -171,21 +183,7 @@ def _of_sides(*, modulus: bool) -> Callable[[list[acb], bool], acb]:
     return applied
 
 
-def _sum(arguments: list[acb], _analytic: bool) -> acb:
-    total = arguments[0]
-    for other in arguments[1:]:
-        total += other
-    return total
-
-
-def _product(arguments: list[acb], _analytic: bool) -> acb:
-    total = arguments[0]
-    for other in arguments[1:]:
-        total *= other
-    return total
-
-
-def _power(arguments: list[acb], analytic: bool) -> acb:
+def _power(arguments: tuple[acb, acb], analytic: bool) -> acb:
     base, exponent = arguments
     return (exponent * base.log(analytic=analytic)).exp()
 
@@ -196,10 +194,10 @@ def _of_nothing_less(x: arb, exponent: arb) -> acb:
     return acb(arb(0).union(top**exponent)) if top > 0 else acb(0)
 
 
-def _rational_power(exponent: sp.Rational, *, modulus: bool) -> Callable[[list[acb], bool], acb]:
+def _rational_power(exponent: sp.Rational, *, modulus: bool) -> _Step:
     n, d = int(exponent.p), int(exponent.q)
 
-    def power(arguments: list[acb], analytic: bool) -> acb:
+    def power(arguments: tuple[acb, acb], analytic: bool) -> acb:
         base = arguments[0]
         if modulus and d > 1 and n > 0 and not analytic and base.real.contains(0):
             return _of_nothing_less(base.real, arb(n) / d)

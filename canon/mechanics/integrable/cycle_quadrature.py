@@ -45,6 +45,9 @@ COARSE_EVALUATIONS = 4_000
 """Those of an integral that only counts zeros: of one that takes more, a zero lies near the path; another is taken."""
 
 
+_I, _MINUS_I = acb(0, 1), acb(0, -1)
+
+
 @dataclass(frozen=True)
 class Libration:
     """The cycle between two turning points, and the rectangle about it in which p² is under control.
@@ -79,9 +82,8 @@ class Libration:
         """
         left, right = q - self.low, self.high - q
         rest = self._rest(q, analytic).sqrt(analytic=True)
-        i = acb(0, 1)
-        low = (-i).sqrt() if self.wall else (-i * left).sqrt(analytic=analytic)
-        return low * (i * right).sqrt(analytic=analytic) * rest
+        low = _MINUS_I.sqrt() if self.wall else (_MINUS_I * left).sqrt(analytic=analytic)
+        return low * (_I * right).sqrt(analytic=analytic) * rest
 
     def _rest(self, q: acb, analytic: bool = False) -> acb:
         """Return R = p²/((q − a)(b − q)), or p²/(b − q) at a wall."""
