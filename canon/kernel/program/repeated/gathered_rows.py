@@ -63,7 +63,7 @@ def gathered(function: Expr, variables: Sequence[Symbol], t: Symbol) -> Expr:
     >>> whole = sp.Add(*(x**2 / 2 for x in p), *(sp.cos(b - a) for a, b in zip([*q, 0], [0, *q])))
     >>> made = gathered(whole, (*q, *p), sp.Symbol("t"))
     >>> len(whole.args), len(made.args), made.xreplace({s: s.doit() for s in made.atoms(RepeatedSum)}) == whole
-    (1001, 4, True)
+    (1001, 6, True)
     """
     addends = [*_addends(function)]
     if len(addends) < _MANY:
