@@ -256,12 +256,12 @@ def samples(number: int) -> Callable[[], object]:
     return _pendulum(lambda H, how: how(H, (0, number / 10), [1.0, 0.0], step=0.1, samples=number))
 
 
-def orbits(number: int, steps: int = 100) -> Callable[[], object]:
+def orbits(number: int) -> Callable[[], object]:
     """So many orbits side by side for 100 steps."""
     import numpy as np
 
     starts = np.array([np.linspace(0.1, 2.0, number), np.zeros(number)])
-    return _pendulum(lambda H, how: how(H, (0, steps / 10), starts, step=0.1, samples=1))
+    return _pendulum(lambda H, how: how(H, (0, 10), starts, step=0.1, samples=1))
 
 
 def _pendulum(go: Callable[..., object]) -> Callable[[], object]:
@@ -339,52 +339,17 @@ def table(names: list[str], quick: bool) -> None:
         )
 
 
-def on_two_cores() -> None:
-    """Print how much sooner orbits side by side arrive on two cores than on one, in turn, the quickest of three."""
-    sizes, times = (10_000, 100_000, 1_000_000), dict[tuple[int, int], float]()
-    for size in sizes:
-        for cores in (1, 2) * 3:
-            given = [sys.executable, str(HERE), "--cores", str(cores), str(size)]
-            seconds = float(subprocess.run(given, capture_output=True, text=True, check=True).stdout)
-            times[size, cores] = min(seconds, times.get((size, cores), seconds))
-    print("orbits side by side, 1,000 steps, by the clock on one core and on two")
-    print("  size     " + "".join(f"{size:>11,}" for size in sizes))
-    for cores in (1, 2):
-        print(
-            f"  {cores} core{'s' * (cores > 1):4}" + "".join(f"{times[size, cores]:>11.3f}" for size in sizes)
-        )
-    print(
-        "  times as fast" + "".join(f"{times[s, 1] / times[s, 2]:>11.2f}" for s in sizes).removeprefix("    ")
-    )
-
-
-def on_cores(cores: int, size: int) -> float:
-    """Return the seconds by the clock that orbits take on so many cores."""
-    os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[:cores])
-    os.cpu_count = lambda: cores  # as many threads as there are cores for them
-    work = orbits(size, steps=1000)
-    work()
-    begun = time.perf_counter()
-    work()
-    return time.perf_counter() - begun
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("rows", nargs="*", choices=[*ROWS, []], help="rows of the table, all where not given")
     parser.add_argument("--quick", action="store_true", help="without the largest size of each row")
     parser.add_argument("--one", nargs=2, help=argparse.SUPPRESS)
-    parser.add_argument("--cores", nargs=2, type=int, help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.one:
         print(json.dumps(one(given.one[0], int(given.one[1]))))
-    elif given.cores:
-        print(on_cores(*given.cores))
     else:
         os.environ.setdefault("PYTHONHASHSEED", "0")
         table(given.rows or list(ROWS), given.quick)
-        if not given.rows and not given.quick:
-            on_two_cores()
 
 
 if __name__ == "__main__":

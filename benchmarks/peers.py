@@ -127,6 +127,21 @@ def search(problem: Problem, contender: Contender) -> None:
             return
 
 
+def in_time(c: Contender, accuracy: float, turn: int) -> bool:
+    """Take a contender's turn, where it is not too dear; return False where it does not come to an end."""
+    costs = c.costs.setdefault(accuracy, [])
+    try:
+        if turn and costs[0] < SHORT:
+            c.run(c.chosen[accuracy], 1)
+        if not turn or costs[0] < 1:
+            whole, (seconds, _) = timed(lambda: c.run(c.chosen[accuracy], 1))
+            costs.append(seconds)
+            c.calls.setdefault(accuracy, []).append(whole)
+    except RuntimeError:
+        return False
+    return True
+
+
 def compare(key: tuple[str, str, int, int]) -> Iterator[str]:
     """Compare everything on one problem."""
     problem = Problem(*key)
@@ -140,14 +155,7 @@ def compare(key: tuple[str, str, int, int]) -> Iterator[str]:
     for accuracy in ACCURACIES:
         able = [c for c in contenders if accuracy in c.chosen]
         for turn in range(TURNS + 1):
-            for c in able:
-                costs = c.costs.setdefault(accuracy, [])
-                if not turn or costs[0] < 1:
-                    if turn and costs[0] < SHORT:
-                        c.run(c.chosen[accuracy], 1)
-                    whole, (seconds, _) = timed(lambda c=c, accuracy=accuracy: c.run(c.chosen[accuracy], 1))
-                    costs.append(seconds)
-                    c.calls.setdefault(accuracy, []).append(whole)
+            able = [c for c in able if in_time(c, accuracy, turn)]
         yield f"{problem.name}, max |ΔE/E| ≤ {accuracy:.0e}"
         ranked = sorted(able, key=lambda c: c.cost(accuracy))
         loops, wholes = dict[str, float](), dict[str, float]()
