@@ -251,8 +251,8 @@ SECTIONS = {
     ),
     "growth": Section(
         "Waiting grows about as the size where H is a sum over neighbours, and with claims, cases, samples and orbits; "
-        "with all pairs of bodies as their number does, once there are thousands, and with links somewhat faster than "
-        "they. A slope is that of the logarithms between the two largest sizes.",
+        "with the number of all pairs of bodies, once there are thousands of them, and somewhat faster than the number "
+        "of links. A slope is that of the logarithms between the two largest sizes.",
         (
             Table(
                 ("what", "processor seconds, from the smallest size to the largest", "slope"),

@@ -46,7 +46,7 @@ BENCHMARKS = {
     "peers_ensembles": "Ten thousand orbits, beside other libraries",
     "peers_losing": "Stiff, large and with close encounters, beside other libraries",
     "planets": "The planets, by methods for small perturbations",
-    "scale_out": "Studies on two processes",
+    "scale_out": "Studies on two processes, orbits on two cores",
     "drift_calibration": "The drift statistics on series of known growth",
     "robustness": "Attacks, counted",
     "mutation": "Mutants of canon that its tests kill",

@@ -34,7 +34,7 @@ ROUNDS = int(os.environ.get("ROUNDS", "3"))
 PROCESSES = 2
 ORBITS, STEPS = (10_000, 100_000), 10_000
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1"}
-"""Else a thread of NumPy's matrices keeps one of the cores busy for seconds after each use, and after its start."""
+"""Otherwise NumPy's thread for products of matrices keeps a core busy for seconds after its start and each use."""
 
 
 def study(steps: int) -> Study:

@@ -4,8 +4,8 @@
 
 By the clock, the median of runs that take turns, and the processor time of a run beside it. What comes before canon
 begins is what Python and the libraries take to load that the command needs: SymPy, NumPy and heyoka. Machine code that
-an earlier process has compiled is loaded again, as it is at the second call of a command; the first line of each has
-none.
+an earlier process has compiled is loaded again, as it is at the second call of a command; what the first call took,
+which found none, stands behind.
 """
 
 from __future__ import annotations

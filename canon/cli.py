@@ -34,6 +34,9 @@ examples:
   canon choose kepler --accuracy 1e-9               the cheapest one that suffices
 """
 
+_THREADS_OF_MATRICES = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+"""Matrices are small here: more threads would only wait for each other."""
+
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command and return its exit status.
@@ -44,11 +47,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         The arguments after ``canon``; those of the process unless given.
     """
     given = list(sys.argv[1:] if argv is None else argv)
-    for library in (
-        "OPENBLAS",
-        "MKL",
-    ):  # whose matrices are small here: threads would only wait for each other
-        os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+    for variable in _THREADS_OF_MATRICES:
+        os.environ.setdefault(variable, "1")
     try:
         streams_open()
         status = _status(given)

@@ -6,7 +6,6 @@ One page of each kind is built, with what its code prints: of all pages that tak
 import functools
 import http.server
 import os
-import shutil
 import subprocess
 import sys
 import threading
@@ -15,18 +14,10 @@ from pathlib import Path
 import pytest
 
 pytest.importorskip("selenium", reason="Selenium is not installed")
-pytest.importorskip("myst_nb", reason="the extra 'docs' is not installed")
-from selenium import webdriver
 from selenium.webdriver.support.ui import WebDriverWait
 
 HOME = Path(__file__).parents[1]
-BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-DRIVER = shutil.which("chromedriver")
-
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(not (BROWSER and DRIVER), reason="no Chromium with its driver is installed"),
-]
+pytestmark = pytest.mark.slow
 
 KEPT = ("index.md", "measured.md", "tutorials/1_pendulum.md")
 EXAMPLE = "judge/one_answer.py"
@@ -51,6 +42,7 @@ def keep_one_page_of_each_kind(clone):
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory):
+    pytest.importorskip("myst_nb", reason="the extra 'docs' is not installed")
     clone = tmp_path_factory.mktemp("pages") / "canon"
     subprocess.run(["git", "clone", "--quiet", "--no-hardlinks", str(HOME), str(clone)], check=True)
     keep_one_page_of_each_kind(clone)
@@ -76,21 +68,6 @@ def address(built):
         threading.Thread(target=server.serve_forever, daemon=True).start()
         yield f"http://127.0.0.1:{server.server_address[1]}/"
         server.shutdown()
-
-
-@pytest.fixture(scope="module")
-def browser():
-    options = webdriver.ChromeOptions()
-    options.binary_location = BROWSER
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    wanted = ["--headless=new", "--window-size=1200,900", "--disable-dev-shm-usage", "--disable-gpu"]
-    if hasattr(os, "geteuid") and os.geteuid() == 0:
-        wanted.append("--no-sandbox")  # Chromium's own refuses to start for root
-    for each in wanted:
-        options.add_argument(each)
-    made = webdriver.Chrome(options=options, service=webdriver.ChromeService(DRIVER))
-    yield made
-    made.quit()
 
 
 @pytest.fixture

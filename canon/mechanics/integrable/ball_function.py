@@ -41,9 +41,8 @@ ENTIRE: dict[Any, Callable[[acb], acb]] = {
 
 NOWHERE = acb("nan")
 
-_Two: TypeAlias = "Callable[[acb, acb], acb]"
 _Step: TypeAlias = "Callable[[tuple[acb, acb], bool], acb]"
-"""Operations of one or two operands, whether they have to be holomorphic; of one it stands there twice."""
+"""An operation, and whether it has to be holomorphic; what has one operand is given it twice."""
 
 
 class NotHolomorphicError(ValueError):
@@ -79,7 +78,7 @@ class BallFunction:
         self.f = f
         self._variable, self._values = variable, values
         self._constants: list[acb] = [NOWHERE]
-        self._steps: list[tuple[int, _Two | None, int, int, _Step | None]] = []
+        self._steps: list[tuple[int, int, int, Callable[..., acb], bool]] = []
         self._places: dict[sp.Basic, int] = {variable: 0}
         self._last = self._place(f)
 
@@ -87,11 +86,11 @@ class BallFunction:
         """Return the value on a ball; not finite where ``analytic`` and not certainly holomorphic there."""
         memory = self._constants.copy()
         memory[0] = z
-        for place, two, i, j, step in self._steps:
-            if step is None:
-                memory[place] = two(memory[i], memory[j])  # pyright: ignore[reportOptionalCall]
+        for place, i, j, operation, is_entire in self._steps:  # sums and products, without a call in between
+            if is_entire:
+                memory[place] = operation(memory[i], memory[j])
             else:
-                memory[place] = step((memory[i], memory[j]), analytic)
+                memory[place] = operation((memory[i], memory[j]), analytic)
         return memory[self._last]
 
     def _place(self, node: sp.Basic) -> int:
@@ -106,18 +105,18 @@ class BallFunction:
         if isinstance(node, sp.Add | sp.Mul):
             return self._two_by_two(node.args, operator.add if isinstance(node, sp.Add) else operator.mul)
         operands = [self._place(each) for each in _operands(node)]
-        return self._added(None, operands[0], operands[-1], _operation(node))
+        return self._added(operands[0], operands[-1], _operation(node), is_entire=False)
 
-    def _two_by_two(self, operands: Sequence[sp.Basic], two: _Two) -> int:
+    def _two_by_two(self, operands: Sequence[sp.Basic], two: Callable[[acb, acb], acb]) -> int:
         """Return the place of a sum or product: of what is constant once, then of each of the others."""
         still = [_constant(each, self._values) for each in operands if not each.has(self._variable)]
         places = [self._kept(reduce(two, still))] if still else []
         places += [self._place(each) for each in operands if each.has(self._variable)]
-        return reduce(lambda i, j: self._added(two, i, j), places)
+        return reduce(lambda i, j: self._added(i, j, two, is_entire=True), places)
 
-    def _added(self, two: _Two | None, i: int, j: int, step: _Step | None = None) -> int:
+    def _added(self, i: int, j: int, operation: Callable[..., acb], *, is_entire: bool) -> int:
         place = self._kept(NOWHERE)
-        self._steps.append((place, two, i, j, step))
+        self._steps.append((place, i, j, operation, is_entire))
         return place
 
     def _kept(self, constant: acb) -> int:

@@ -8,14 +8,15 @@ import re
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import sympy as sp
-from sympy import Dummy, Symbol
+from sympy import Dummy
 
 from canon.expression.symbols.repeated_sum import RepeatedSum
+from canon.expression.symbols.symbols_and_functions import symbols_and_functions
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from sympy import Expr
+    from sympy import Expr, Symbol
 
 __all__ = ["gathered"]
 
@@ -68,7 +69,7 @@ def gathered(function: Expr, variables: Sequence[Symbol], t: Symbol) -> Expr:
     addends = [*_addends(function)]
     if len(addends) < _MANY:
         return function
-    held = [_symbols(rest, t) for _, rest in addends]
+    held = [symbols_and_functions(rest)[0] - {t} for _, rest in addends]
     order, half = _order(variables, {*itertools.chain(*held)}), len(variables) // 2
     forms, shapes = _Forms(), dict[Any, list[_Row]]()
     for (factor, rest), unordered in zip(addends, held, strict=True):
@@ -94,18 +95,6 @@ def _addends(function: Expr) -> Iterator[tuple[Expr, Expr]]:
             yield from ((others * each).as_coeff_Mul() for each in long[0].args)
         else:
             yield addend.as_coeff_Mul()
-
-
-def _symbols(term: Any, t: Symbol) -> set[Any]:
-    """Return the symbols of a term but for the time."""
-    found, waiting = set[Any](), [term]
-    while waiting:
-        current = waiting.pop()
-        if current.args:
-            waiting.extend(current.args)
-        elif isinstance(current, Symbol):
-            found.add(current)
-    return found - {t}
 
 
 def _order(variables: Sequence[Symbol], held: set[Any]) -> dict[Any, int]:
