@@ -172,6 +172,9 @@ def exchanged(before: Sequence[str], told: Sequence[str]) -> list[str]:
     where = [line for line, rows in old.items() if not rows and not line.endswith(f": {anew}")]
     where += [f"{line}: {anew}" for line, rows in new.items() if not rows]
     kept = {**{title: rows for title, rows in old.items() if rows}, **{t: r for t, r in new.items() if r}}
+    named = [line for line in where if ": " in line]
+    if all(any(title in line.partition(": ")[2] for line in named) for title in kept):
+        where = named  # nothing is left of what was measured first
     return [*where, *(line for title, rows in kept.items() for line in (title, *rows))]
 
 

@@ -102,4 +102,6 @@ def test_problems_measured_anew_take_the_place_of_the_old():
     assert once == ["here, June", "there, July: b, c", "a", "    1", "    2", "b", "    4", "c", "    5"]
     again = peer_problems.exchanged(once, ["there, August", "b", "    6", "c", "    7"])
     assert again == ["here, June", "there, August: b, c", "a", "    1", "    2", "b", "    6", "c", "    7"]
+    rest = peer_problems.exchanged(again, ["there, May", "a", "    8"])
+    assert rest[:2] == ["there, August: b, c", "there, May: a"]  # of the first run nothing is left
     assert peer_problems.exchanged([], before) == before
