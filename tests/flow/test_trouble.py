@@ -61,6 +61,26 @@ def test_the_terms_of_each_orbit_have_the_size_that_they_have_alone() -> None:
     assert 0.1 < together[0] < 2
 
 
+@pytest.mark.parametrize("samples", [1, 50])
+@pytest.mark.parametrize(
+    ("H", "start", "step"),
+    [(PENDULUM.H, [1.5697, 0.0], 0.1), (PENDULUM.p[0] ** 2 / 2 - PENDULUM.q[0] ** 2 / 2, [1e-3, 0.0], 0.1)],
+    ids=["let go at nearly a right angle", "away from the top"],
+)
+def test_terms_that_are_small_at_the_start_only_are_no_measure(H, start, step, samples):
+    system = System(H, PENDULUM.q, PENDULUM.p)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        motion = propagate(system, (0, 20), start, method=Splitting("verlet"), step=step, samples=samples)
+    assert abs(motion.energy_change).max() > 0.5 * abs(motion.energy[0])
+
+
+def test_steps_that_are_far_too_large_are_told_where_the_terms_are_small_at_the_start():
+    """The wrong twin of the pendulum above."""
+    with pytest.warns(AccuracyWarning, match="far too large"):
+        propagate(PENDULUM, (0, 20), [1.5697, 0.0], method=RK4(), step=2.5, samples=8)
+
+
 def test_a_motion_that_ends_before_the_collision_is_not_flagged():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
