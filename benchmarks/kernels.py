@@ -320,17 +320,26 @@ def cold_start() -> float:
 
 
 def over_processes() -> str:
-    """Return how a long chain's step, over C's, differs from process to process: memory lies elsewhere in each."""
+    """Return how a long chain's step differs from process to process: memory lies elsewhere in each."""
     given = [sys.executable, __file__, "--chain"]
     rows = [
         subprocess.run(given, capture_output=True, text=True, check=True).stdout for _ in range(PROCESSES)
     ]
-    found = sorted(float(re.search(r"double +([\d.]+) × C", row)[1]) for row in rows if "× C" in row)
-    if not found:
+    rows = [row for row in rows if "× C" in row]
+    if not rows:
         return "no C compiler"
-    return (
-        f"FPUT 512, verlet, in {len(found)} processes: {found[0]:.2f} to {found[-1]:.2f} × C, "
-        f"median {statistics.median(found):.2f}"
+    c = [float(re.search(r"C +([\d.]+) ns", row)[1]) for row in rows]
+    ratios = {
+        loop: [float(re.search(rf"{loop} +([\d.]+) × C", row)[1]) for row in rows]
+        for loop in ("double", "compensated")
+    }
+    took = {"C": c} | {
+        loop: [mine * one for mine, one in zip(found, c, strict=True)] for loop, found in ratios.items()
+    }
+    return "\n".join(
+        f"FPUT 512, verlet, in {len(rows)} processes: {loop} {min(found):.0f} to {max(found):.0f} ns a step, "
+        f"median {statistics.median(found):.0f} ns, {statistics.median(found) / statistics.median(c):.2f} × C"
+        for loop, found in took.items()
     )
 
 

@@ -308,8 +308,17 @@ SECTIONS = {
                 r"\(.*?double-double +([\d.]+) \(",
             ),
             Table(
-                ("in processes of their own", "processes", "least, × C", "most, × C", "median, × C"),
-                r"^(FPUT 512, verlet), in (\d+) processes: ([\d.]+) to ([\d.]+) × C, median ([\d.]+)$",
+                (
+                    "in processes of their own",
+                    "processes",
+                    "loop",
+                    "least, ns a step",
+                    "most",
+                    "median",
+                    "× C",
+                ),
+                r"^(FPUT 512, verlet), in (\d+) processes: (\w+) (\d+) to (\d+) ns a step, median (\d+) ns, "
+                r"([\d.]+) × C$",
             ),
         ),
     ),

@@ -22,7 +22,14 @@ __all__ = ["HEAP", "LIBRARY", "Writer"]
 
 _ALGEBRA = {"add": "fadd", "sub": "fsub", "mul": "fmul", "div": "fdiv"}
 
-_LONG = 128
+_PAGE, _APART, _LONG = 4096, 9 * 128, 128
+"""Bytes of a page, and by how many of them arrays of 128 numbers and more are set apart within one.
+
+A load waits for older stores to addresses that agree with its own in their last twelve bits and in a few that the
+processor draws from where the page lies. Where loops run through several arrays at once, these begin so far apart that
+such stores are done; a sixteenth of all pairs of pages, which no program can choose, would be slow otherwise. Nine
+times 128 bytes: five arrays are 512 bytes or more from each other, and numbers of every kind keep their alignment.
+"""
 
 _STACK, _LARGE, _LINE = 256 * 1024, 4096, 64
 """Bytes of a function's arrays that its stack has room for, also in a thread; of an array that is moved to the heap
@@ -52,8 +59,8 @@ class Writer:
         self.inlined = True
         """Whether double-double operations become part of the function that calls them."""
         self.reserved: list[str] = []
-        self._arrays: dict[int, tuple[str, int]] = {}
-        """The names of arrays and their bytes, by place in what is reserved."""
+        self._arrays: dict[int, tuple[str, int, int]] = {}
+        """The names of arrays, their bytes and their parts, by place in what is reserved."""
         self.lines: list[str] = []
         self.declarations: set[str] = set()
         self._names = itertools.count(1)
@@ -208,22 +215,26 @@ class Writer:
 
     def _heaped(self) -> tuple[list[str], list[str]]:
         """Return what is reserved, large arrays on the heap where the stack has no room, and what frees them."""
-        if sum(size for _, size in self._arrays.values()) <= _STACK:
+        if sum(size for _, size, _ in self._arrays.values()) <= _STACK:
             return self.reserved, []
         self.declarations |= {
             "declare noalias ptr @malloc(i64)", "declare void @free(ptr)", "declare ptr @llvm.ptrmask.p0.i64(ptr, i64)"
         }  # fmt: skip
         reserved, freed = list(self.reserved), list[str]()
-        for place, (name, size) in self._arrays.items():
+        before = 0
+        for place, (name, size, parts) in self._arrays.items():
             if size >= _LARGE:
+                apart = before * _APART % _PAGE
                 reserved[place] = "\n".join(
                     (
-                        f"  {name}.given = call noalias ptr @malloc(i64 {size + _LINE})",
-                        f"  {name}.next = getelementptr inbounds i8, ptr {name}.given, i64 {_LINE}",
-                        f"  {name} = call ptr @llvm.ptrmask.p0.i64(ptr {name}.next, i64 {-_LINE})",
+                        f"  {name}.given = call noalias ptr @malloc(i64 {size + _PAGE + apart})",
+                        f"  {name}.next = getelementptr inbounds i8, ptr {name}.given, i64 {_PAGE}",
+                        f"  {name}.page = call ptr @llvm.ptrmask.p0.i64(ptr {name}.next, i64 {-_PAGE})",
+                        f"  {name} = getelementptr inbounds i8, ptr {name}.page, i64 {apart}",
                     )
                 )
                 freed.append(f"  call void @free(ptr {name}.given)")
+                before += parts
         return reserved, freed
 
     # lanes and choices ---------------------------------------------------------------------------
@@ -294,14 +305,23 @@ class Writer:
 
     # memory --------------------------------------------------------------------------------------
 
-    def array(self, length: int) -> str:
-        """Reserve local memory for so many numbers."""
-        # Arrays whose addresses differ by multiples of 4096 bytes delay each other: long ones are set apart.
-        apart = 24 if length >= _LONG else 0
-        name = self.reserve(f"[{length + apart} x {self.number.name}], align {_LINE}")
+    @property
+    def _bytes(self) -> int:
+        """Bytes of a number in memory."""
         kind = self.number
-        size = (length + apart) * kind.alignment * kind.lanes * (1 + kind.pair)
-        self._arrays[len(self.reserved) - 1] = name, size
+        return kind.alignment * kind.lanes * (1 + kind.pair)
+
+    def gap(self, length: int) -> int:
+        """Return how many numbers to leave free after so many, so that what comes next is set apart from them."""
+        return (_APART - length * self._bytes) % _PAGE // self._bytes if 2 * length > _LONG else 0
+
+    def array(self, length: int, parts: int = 1) -> str:
+        """Reserve local memory for so many numbers, in so many parts that a :meth:`gap` sets apart."""
+        size = length * self._bytes
+        if length >= _LONG:
+            size += (parts * _APART - size) % _PAGE  # where the next begins
+        name = self.reserve(f"[{size // self._bytes} x {self.number.name}], align {_LINE}")
+        self._arrays[len(self.reserved) - 1] = name, size, parts
         return name
 
     def reserve(self, what: str) -> str:

@@ -37,8 +37,6 @@ if TYPE_CHECKING:
 
 __all__ = ["SplittingWriter", "splitting_loop", "write_splitting"]
 
-_LONG, _ALIGNED, _APART = 64, 8, 24
-
 
 def splitting_loop(
     system: HamiltonEquations,
@@ -132,8 +130,10 @@ class SplittingWriter:
     ) -> SplittingWriter:
         """Return the writer for a loop, with memory of its own for the state."""
         n = len(system.q)
-        gap = _gap(n)
-        y, e = w.array(2 * n + gap), w.array(2 * n + gap) if compensated else ""
+        # In long chains q starts where SIMD stores do and p one number before: it is the inner members that are moved
+        # together.
+        gap = w.gap(n + 1)
+        y, e = w.array(2 * n + gap, 2), w.array(2 * n + gap, 2) if compensated else ""
         force, drift_clock, kick_clock = w.array(n), w.array(1), w.array(1)
         loops = system.loops
         pairs = pair_forces(system) if loops is None else loops.pairs
@@ -237,12 +237,3 @@ class SplittingWriter:
     def _advance(self, clock: str, coefficient: str) -> None:
         if not self.system.autonomous:
             self.w.store(self.w.algebra("add", self.w.load(clock, 0), coefficient), clock, 0)
-
-
-def _gap(n: int) -> int:
-    """Return how many numbers to leave free between q and p.
-
-    Where they are many, q starts where SIMD stores do and p one number before: it is the inner members of a chain that
-    are moved together. Both are set apart, for addresses that differ by a multiple of 4096 bytes delay each other.
-    """
-    return _APART + -(n + 1) % _ALIGNED if n >= _LONG else 0
