@@ -269,8 +269,12 @@ def plain(f: Any, q: Sequence[Symbol], t: Symbol = time, *, keep_sums: bool = Fa
         expression = without_dynamicsymbols(expression, {g: s}, clock)
     if applied:
         symbols, _ = symbols_and_functions(expression)
-    check_no_namesake(expression, symbols, named, q, t)
-    _check_no_other_time(expression, symbols.difference(clocks), named, t)
-    exact = {s: rate for s in symbols if (rate := _rate_named(s.name, named)) is not None}
+    others = {
+        s for s in symbols if named.get(s.name) is not s
+    }  # of a hundred thousand variables nothing is asked
+    check_no_namesake(expression, others, named, q, t)
+    _check_no_other_time(expression, others.difference(clocks), named, t)
+    rates = (s for s in symbols if s.name.endswith("dot"))
+    exact = {s: rate for s in rates if (rate := _rate_named(s.name, named)) is not None}
     meant = {Symbol(t.name): t, **clocks, **exact}
     return expression if symbols.isdisjoint(meant) else exchanged(expression, meant)

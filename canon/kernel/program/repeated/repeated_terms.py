@@ -15,7 +15,7 @@ from canon.expression.symbols.repeated_sum import RepeatedSum, sums_within
 from canon.kernel.program.program import exact_value, with_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
     import numpy.typing as npt
@@ -200,41 +200,37 @@ class _Reader:
         """Return a sum as sums whose columns are all places or all numbers, or None where its arguments are other."""
         if not self.place.keys().isdisjoint(whole.term.free_symbols):
             return None
-        rows = self._rows(whole)
-        if rows is None:
-            return None
-        if whole.pairs and len(rows) > 1:
+        groups = self._columns(whole)
+        if groups is None or (whole.pairs and len(groups) > 1):
             return None
         graph = Graph()
         node = self._node(graph, whole.term, whole.slots)
-        return [
-            RepeatedTerms(graph, node, whole.slots, _columns(kinds, members), whole.pairs)
-            for kinds, members in rows.items()
-        ]
+        return [RepeatedTerms(graph, node, whole.slots, columns, whole.pairs) for columns in groups]
 
-    def _rows(self, whole: RepeatedSum) -> dict[tuple[bool, ...], list[tuple[Any, ...]]] | None:
-        """Return the arguments by whether each is a place or a number, or None where one is neither.
+    def _columns(self, whole: RepeatedSum) -> list[tuple[Column, ...]] | None:
+        """Return the arguments of all rows with places and numbers in the same slots, or None where one is neither.
 
-        Nearly all are places, and there may be a hundred thousand of them.
+        In nearly all rows all are places, and there may be a hundred thousand of them.
         """
-        read = list(
-            zip(*([self.place.get(each) for each in column] for column in whole.columns), strict=True)
-        )
+        read = [[self.place.get(each) for each in column] for column in whole.columns]
+        other = {i for column in read if None in column for i, place in enumerate(column) if place is None}
         known: dict[Expr, Any] = {}
-        rows: dict[tuple[bool, ...], list[tuple[Any, ...]]] = {}
-        places = (True,) * len(whole.columns)
-        for row, given in zip(read, whole.rows, strict=True):
-            if None not in row:
-                rows.setdefault(places, []).append(row)
-                continue
-            other = tuple(
-                self._number(each, known) if place is None else place
-                for place, each in zip(row, given, strict=True)
-            )
-            if None in other:
-                return None
-            rows.setdefault(tuple(place is not None for place in row), []).append(other)
-        return rows
+        found: dict[tuple[bool, ...], list[int]] = {}
+        for i in sorted(other):
+            kinds: list[bool] = []
+            for given, column in zip(whole.columns, read, strict=True):
+                kinds.append(column[i] is not None)
+                if column[i] is None:
+                    column[i] = self._number(given[i], known)
+                    if column[i] is None:
+                        return None
+            found.setdefault(tuple(kinds), []).append(i)
+        if len(other) < len(read[0]):
+            found[(True,) * len(read)] = [i for i in range(len(read[0])) if i not in other]
+        return [
+            tuple(_column(is_place, column, rows) for is_place, column in zip(kinds, read, strict=True))
+            for kinds, rows in sorted(found.items(), key=lambda group: group[1][0])
+        ]
 
     def of_single(self, expression: Expr) -> RepeatedTerms:
         """Return what stands beside the sums, as a sum of one row."""
@@ -258,9 +254,6 @@ class _Reader:
         return known[argument]
 
 
-def _columns(kinds: Sequence[bool], rows: Sequence[Sequence[Any]]) -> tuple[Column, ...]:
-    columns: Iterator[tuple[Any, ...]] = zip(*rows, strict=True)
-    return tuple(
-        np.array(column) if is_place else tuple(column)
-        for is_place, column in zip(kinds, columns, strict=True)
-    )
+def _column(is_place: bool, column: Sequence[Any], rows: Sequence[int]) -> Column:
+    members = column if len(rows) == len(column) else (column[i] for i in rows)
+    return np.fromiter(members, np.intp, len(rows)) if is_place else tuple(members)
