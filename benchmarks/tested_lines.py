@@ -9,6 +9,7 @@ python benchmarks/tested_lines.py --kept             # the table that was kept f
 What was run is counted until ``.coverage_data`` is removed, and the table is kept in ``results/tested_lines.txt``.
 Other arguments go to pytest. It takes ``pip install coverage pytest-random-order``. Processes that are killed tell
 nothing of what they ran. Tests with a bound of processor time may fail where each line takes longer than it does alone.
+Under Python 3.11 a thread may fail to begin: two that begin at once can't both be traced (python/cpython#98257).
 """
 
 from __future__ import annotations

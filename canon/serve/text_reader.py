@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any
@@ -34,6 +35,8 @@ class TextReader:
     def __init__(self) -> None:
         self._thread = ThreadPoolExecutor(1, "reading")
         self._child: Child | None = None
+        self._starting = threading.Lock()
+        self._closed = False
         self._texts = 0
         self.waiting = 0
         """Texts that are read or wait for it."""
@@ -65,7 +68,9 @@ class TextReader:
             self.waiting -= 1
 
     def close(self) -> None:
-        """Kill the process."""
+        """Kill the process, whatever it is reading; none is started any more."""
+        with self._starting:
+            self._closed = True
         self._thread.shutdown(wait=False, cancel_futures=True)
         self._stop()
 
@@ -88,7 +93,10 @@ class TextReader:
         child = self._child
         if child is None or not child.usable or self._texts >= TEXTS_A_PROCESS:
             self._stop()
-            self._child = child = Child("canon.serve.reading_process", leads=True)
+            with self._starting:  # what starts is known to whoever closes, or does not start
+                if self._closed:
+                    raise Refusal(503, "the service is ending; ask again when it is back")
+                self._child = child = Child("canon.serve.reading_process", leads=True)
             try:
                 child.receive(time.monotonic() + START)
             except (Late, Ended) as reason:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import queue
 import socket
 import threading
 from contextlib import contextmanager
@@ -192,6 +193,71 @@ def test_a_process_that_ended_or_has_read_enough_is_replaced(monkeypatch: pytest
     monkeypatch.setattr(text_reader, "TEXTS_A_PROCESS", 3)
     assert asyncio.run(asked()) == [0, 1, 2, 0, 1, 0, 1]
     assert len(started) == 3
+
+
+class Endless:
+    """A process that is ready at once, and reads until it is killed."""
+
+    def __init__(self, *_: object, **__: object) -> None:
+        self.usable, self.reading, self.killed = True, threading.Event(), threading.Event()
+
+    def send(self, encode: object, seconds: float) -> None:
+        self.reading.set()
+
+    def receive(self, deadline: float) -> bytes:
+        if not self.reading.is_set():
+            return b""
+        self.killed.wait()
+        raise text_reader.Ended
+
+    def kill(self) -> None:
+        self.usable = False
+        self.killed.set()
+
+
+def test_a_reader_that_is_closed_while_it_reads_starts_no_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It once took its killed process for one that broke off, and started another, which nobody killed."""
+    started: list[Endless] = []
+
+    class Process(Endless):
+        def __init__(self, *_: object, **__: object) -> None:
+            super().__init__()
+            started.append(self)
+
+    async def closed() -> int:
+        reader = text_reader.TextReader()
+        asked = asyncio.create_task(reader.how_read({"text": "x"}, WorkTime()))
+        while not (started and started[0].reading.is_set()):
+            await asyncio.sleep(0)
+        reader.close()
+        with pytest.raises(Refusal, match="the service is ending") as refused:
+            await asked
+        return refused.value.status
+
+    monkeypatch.setattr(text_reader, "Child", Process)
+    assert asyncio.run(closed()) == 503
+    assert [process.usable for process in started] == [False]
+
+
+def test_a_reader_that_is_closed_while_its_process_starts_kills_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    made: queue.SimpleQueue[text_reader.TextReader] = queue.SimpleQueue()
+    closing: list[threading.Thread] = []
+    started: list[Endless] = []
+
+    class Process(Endless):
+        def __init__(self, *_: object, **__: object) -> None:
+            super().__init__()
+            closing.append(threading.Thread(target=made.get().close))
+            closing[0].start()
+            closing[0].join(0.1)  # until it is closed, or waits for this process
+            started.append(self)
+
+    monkeypatch.setattr(text_reader, "Child", Process)
+    made.put(text_reader.TextReader())
+    while not started:
+        pass
+    closing[0].join()
+    assert [process.usable for process in started] == [False]
 
 
 @pytest.mark.parametrize(
