@@ -15,6 +15,7 @@ from canon.exercise.report.report import Report
 from canon.exercise.sheet.sheet import Claim, Sheet, bundled_sheet, claim_from, read_sheet
 from canon.exercise.waiting_claims import OWN_KEYS, WaitingClaims
 from canon.expression.symbols.input_in_words import given_kind
+from canon.process import Ended
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -136,7 +137,7 @@ class JudgePool:
         self._closed.set()
         self._threads.shutdown(wait=False, cancel_futures=True)
         for worker in self._all:
-            worker.stop()
+            worker.close()
 
     def _judged_by(self, worker: Worker, claim: Claim) -> Judgement:
         if self._closed.is_set():
@@ -161,10 +162,8 @@ class JudgePool:
     def _put_back(self, worker: Worker) -> None:
         """Let the next claim have a process, a new one where it was killed or has judged enough."""
         try:
-            with suppress(OSError):  # the system has no process to give now; the next claim asks again
-                if self._closed.is_set():
-                    worker.stop()
-                elif worker.judged >= CLAIMS_A_PROCESS:
+            with suppress(OSError, Ended):  # the system has no process to give now, or the pool is closed
+                if worker.judged >= CLAIMS_A_PROCESS:
                     worker.stop()
                     worker.start()
                 elif worker.judged:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from types import TracebackType
 
-__all__ = ["BROKE_OFF", "Worker"]
+__all__ = ["BROKE_OFF", "NOT_STARTED", "Worker"]
 
 MEMORY = 2 * 1024**3
 START = 60.0
@@ -43,6 +43,8 @@ FEEDBACK = 12.0
 
 BROKE_OFF = "the process that judged it broke off (memory, or a fault)"
 """What is known of a claim whose process ended before its verdict."""
+NOT_STARTED = "no process could be started to judge it"
+"""What is known of a claim whose process ended before it was ready, or never began."""
 
 
 class Worker:
@@ -63,6 +65,7 @@ class Worker:
     def __init__(self, child: Child | None = None) -> None:
         self._child = child
         self._ready = False
+        self._closed = False
         self.judged = 0
         """Claims that its process was asked."""
         self.started = int(child is not None)
@@ -91,8 +94,8 @@ class Worker:
             return invalid(claim, "\n".join(error.brief for error in claim.errors))
         begun = time.monotonic()
         found = self._asked(claim)
-        if found.known == BROKE_OFF and time.monotonic() - begun < AT_ONCE:
-            found = self._asked(claim)  # it was killed before, while it waited for a claim
+        if found.known in (BROKE_OFF, NOT_STARTED) and time.monotonic() - begun < AT_ONCE:
+            found = self._asked(claim)  # it was killed before, while it started or waited for a claim
         return found
 
     def _asked(self, claim: Claim) -> Judgement:
@@ -101,7 +104,7 @@ class Worker:
             child = self._running()
         except (Late, Ended, OSError):
             self.stop()
-            return _open(claim, "no process could be started to judge it", 0.0)
+            return _open(claim, NOT_STARTED, 0.0)
         self.judged += 1
         start = time.monotonic()
         child.send(lambda: _encoded(claim), PATIENCE * (claim.budget + GRACE))  # as long as it is waited for
@@ -129,13 +132,24 @@ class Worker:
         return verdict or _open(claim, why, time.monotonic() - start)
 
     def start(self) -> Child:
-        """Return the process, a new one unless one is running, without waiting until it is ready."""
+        """Return the process, a new one unless one is running, without waiting until it is ready.
+
+        Raises
+        ------
+        Ended
+            Where the worker is closed.
+        """
         child = self._child
         if child is None or not child.usable:
             self.stop()
+            if self._closed:
+                raise Ended("the worker is closed")
             child = self._child = Child(JUDGING, leads=True)
             self._ready, self.judged = False, 0
             self.started += 1
+            if self._closed:  # meanwhile, by another thread, which may have found no process to kill
+                child.kill()
+                raise Ended("the worker is closed")
         return child  # its own name for it: another thread may stop this worker meanwhile
 
     def _running(self) -> Child:
@@ -151,6 +165,11 @@ class Worker:
         child, self._child = self._child, None
         if child is not None:
             child.kill()
+
+    def close(self) -> None:
+        """Kill the process, whatever it is doing; no other one is started, and a claim is said to be undecided."""
+        self._closed = True
+        self.stop()
 
 
 def _received(child: Child, deadline: float, before: float | None, allowed: float) -> bytes:

@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import signal
 import sys
 import threading
 from concurrent.futures import CancelledError, ThreadPoolExecutor
+from dataclasses import replace
 
 import pytest
 
 import canon
-from canon.exercise import JudgePool, Sheet, SheetError, read_sheet
+from canon.exercise import JudgePool, Sheet, SheetError, judge_pool, judging_process, read_sheet
 from canon.exercise.judge_pool import CLAIMS_A_PROCESS
 from canon.exercise.judging_process import BROKE_OFF, Worker
-from canon.exercise.sheet.sheet import Claim
+from canon.exercise.sheet.sheet import Claim, claim_from
 from canon.exercise.waiting_claims import AHEAD, WaitingClaims
-from canon.process import ABANDONED
+from canon.process import ABANDONED, Child, Ended
+
+from .endless_claim import ENDLESS, WatchedWorker, at_work
 
 RIGHT = {"id": "right", "kind": "equality-only", "lhs": "2*x", "rhs": "x + x", "parameters": {"x": "real"}}
 WRONG = {**RIGHT, "id": "wrong", "rhs": "x + 1"}
@@ -157,11 +161,61 @@ def test_a_pool_that_is_closed_meanwhile_says_so_to_whoever_waits():
             list(judged)
 
 
+def test_a_pool_that_is_closed_while_it_judges_starts_no_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It took its killed process for one that was killed before it was asked, and asked another, which judged on."""
+    monkeypatch.setattr(judging_process, "AT_ONCE", math.inf)
+    monkeypatch.setattr(judge_pool, "Worker", WatchedWorker)
+    pool = JudgePool(workers=1, budget=20.0, warm=False)
+    with ThreadPoolExecutor(1) as thread:
+        judged = thread.submit(pool.judge, ENDLESS)
+        at_work()
+        pool.close()
+        assert judged.result().status == "undecided"
+    assert (pool.started, pool.processes) == (1, ())
+
+
+class Gone(Child):
+    """A process that was killed while it started, before anybody could notice."""
+
+    def __init__(self) -> None:
+        pass
+
+    @property
+    def usable(self) -> bool:
+        return True
+
+    def receive(self, deadline: float) -> bytes:
+        raise Ended
+
+    def kill(self) -> None:
+        pass
+
+
+def test_a_process_that_was_killed_while_it_started_costs_no_claim() -> None:
+    with Worker(Gone()) as worker:
+        assert worker.judge(claim_from(RIGHT)).status == "holds"
+
+
+def test_a_worker_that_is_closed_while_its_process_starts_kills_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    worker, started = Worker(), list[Child]()
+
+    def child(module: str, *, leads: bool) -> Child:
+        worker.close()
+        started.append(Child(module, leads=leads))
+        return started[0]
+
+    monkeypatch.setattr(judging_process, "Child", child)
+    with pytest.raises(Ended, match="closed"):
+        worker.start()
+    assert [each.usable for each in started] == [False]
+    assert worker.judge(claim_from(RIGHT)).status == "undecided"
+    assert len(started) == 1
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="no process is halted there")
 def test_a_process_that_others_keep_from_the_processor_is_waited_for():
     """Its own timer counts seconds on the clock: it ended itself while the pool still waited, "memory, or a fault"."""
-    keys = {key: text for key, text in LONG.items() if key not in ("id", "kind")}
     with Worker() as worker:
         assert worker.judge(Claim("first", "equality-only", {"lhs": "1", "rhs": "1"})).status == "holds"
         pid = worker.pid
@@ -171,9 +225,9 @@ def test_a_process_that_others_keep_from_the_processor_is_waited_for():
         ]
         for timer in timers:
             timer.start()
-        found = worker.judge(Claim("a", "equality-only", keys, budget=2.0))
+        found = worker.judge(replace(claim_from(ENDLESS), budget=2.0))
         for timer in timers:
             timer.cancel()  # a process that had ended before could not be woken
             timer.join()
-    assert found.status != "invalid"
-    assert BROKE_OFF not in found.known
+    assert found.status == "undecided"
+    assert found.known != BROKE_OFF
