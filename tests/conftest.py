@@ -6,7 +6,7 @@ import shutil
 import signal
 import sys
 import time
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import pytest
@@ -19,7 +19,7 @@ settings.load_profile("ci" if os.environ.get("CI") else "here")
 collect_ignore_glob = ["data/typed/*"]  # read by checkers of types, never run: half of it is wrong
 
 LONGEST = 300.0
-"""Seconds of a test, slow ones included."""
+"""Seconds of a test, slow ones included, and of what is set up for it and put away after it."""
 
 PATIENCE = 4
 """A test may have so many times as long while more wants to run than there are processors."""
@@ -80,10 +80,32 @@ def pytest_collection_finish():
 
 
 @pytest.hookimpl(wrapper=True)
-def pytest_runtest_call(item):
-    """Fail a test that has not ended in time, with where it was, so that it does not hold up the others."""
-    if not hasattr(signal, "setitimer"):
+def pytest_runtest_setup(item):
+    with in_time(item):
         return (yield)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item):
+    with in_time(item):
+        return (yield)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_teardown(item):
+    with in_time(item):
+        return (yield)
+
+
+@contextmanager
+def in_time(item):
+    """Fail a test that has not ended in time, with where it was, so that it does not hold up the others.
+
+    Tests wait for processes and threads without bounds of their own, and what never comes is met here.
+    """
+    if not hasattr(signal, "setitimer"):
+        yield
+        return
 
     has_more = item.name == DOCUMENTATION or item.config.getoption("examples", None)
     left, longest = PATIENCE - 1, LONGEST * (3 if has_more else 1)
@@ -99,7 +121,7 @@ def pytest_runtest_call(item):
     before = signal.signal(signal.SIGALRM, give_up)
     signal.setitimer(signal.ITIMER_REAL, longest)
     try:
-        return (yield)
+        yield
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)

@@ -15,14 +15,7 @@ import time
 import pytest
 
 from canon.cli import main
-
-LONG = {
-    "id": "long",
-    "kind": "equality-only",
-    "parameters": {"x": "real"},
-    "lhs": "(x + t + cos(x) + 1)**60*sin(x)**40",
-    "rhs": "(x + t + cos(x) + 1)**60*(1 - cos(x)**2)**20 + x*0",
-}
+from tests.exercise.endless_claim import ENDLESS
 
 
 def test_without_the_extra_it_says_what_to_install(monkeypatch, capsys):
@@ -44,9 +37,7 @@ def test_nothing_of_a_web_server_is_loaded_before_it_is_asked_for():
         "    except SystemExit: pass\n"
         "print(sorted({'starlette', 'uvicorn', 'sympy'} & set(sys.modules)), file=sys.stderr)"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120
-    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stderr.strip() == "[]"
     assert "--host ADDRESS" in done.stdout
 
@@ -102,23 +93,13 @@ class Running:
         self.rest.start()
 
     def ask(self, path, body=None):
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, 60)
+        connection = http.client.HTTPConnection("127.0.0.1", self.port)
         said = json.dumps(body) if body is not None else None
         connection.request("POST" if said else "GET", path, said, {"Content-Type": "application/json"})
         answer = connection.getresponse()
         found = answer.status, json.loads(answer.read())
         connection.close()
         return found
-
-
-def gone(pid):
-    for _ in range(100):
-        try:
-            os.kill(pid, 0)
-        except ProcessLookupError:
-            return True
-        time.sleep(0.05)
-    return False
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are POSIX's")
@@ -129,13 +110,13 @@ def test_a_signal_ends_it_when_what_is_in_hand_was_answered(number):
     try:
         assert service.log[0]["host"] == "127.0.0.1"
         found = []
-        asking = threading.Thread(target=lambda: found.append(service.ask("/check", LONG)))
+        asking = threading.Thread(target=lambda: found.append(service.ask("/check", ENDLESS)))
         asking.start()
         while service.ask("/health")[1]["waiting"]["claims"] == 0:
             time.sleep(0.02)
         service.process.send_signal(number)
-        asking.join(60)
-        assert service.process.wait(60) == 0
+        asking.join()
+        assert service.process.wait() == 0
         ((status, judgement),) = found
         assert (status, judgement["status"]) == (200, "undecided")
         assert judgement["known"]
@@ -143,7 +124,7 @@ def test_a_signal_ends_it_when_what_is_in_hand_was_answered(number):
             service.ask("/health")
     finally:
         service.process.kill()
-        service.rest.join(20)
+        service.rest.join()
         with service.process.stdout as out, service.process.stderr:
             printed = out.read()
     assert printed == ""
@@ -151,5 +132,6 @@ def test_a_signal_ends_it_when_what_is_in_hand_was_answered(number):
     (line,) = (line for line in service.log if line.get("path") == "/check")
     assert (line["method"], line["status"], line["claims"], line["undecided"]) == ("POST", 200, 1, 1)
     assert {"time", "level", "seconds", "client", "bytes"} <= line.keys()
-    assert LONG["lhs"] not in json.dumps(service.log)
-    assert gone(service.process.pid)
+    assert ENDLESS["L"] not in json.dumps(service.log)
+    with pytest.raises(ProcessLookupError):
+        os.kill(service.process.pid, 0)

@@ -127,7 +127,7 @@ def test_killed_and_resumed_from_the_shell(tmp_path):
     while not (kept.exists() and kept.stat().st_size and Store(kept).parts_done()):
         assert program.poll() is None
     program.send_signal(signal.SIGKILL)
-    program.wait(30)
+    program.wait()
     assert 0 < max(Store(kept).parts_done().values()) < 30
     assert main(["study", "status", str(kept)]) == 3
     assert main(["study", "resume", str(kept)]) == 0

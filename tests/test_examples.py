@@ -11,6 +11,8 @@ import pytest
 EXAMPLES = Path(__file__).parents[1] / "examples"
 GALLERY = sorted(path for path in EXAMPLES.glob("*/*.py") if path.parent.name not in ("grading", "sheets"))
 A_PAGE = 60
+LONGEST = 30.0
+"""Seconds of a processor that a script may take, its processes included."""
 RESULTS = {
     "derive/double_pendulum": r"period: 2.62 s by the formula, 2.62 s on the motion",
     "derive/quasi_velocities": r"energy 1.000001, changed by at most \de-1[3-6]",
@@ -81,14 +83,16 @@ def test_every_script_has_a_result():
 
 
 @pytest.mark.parametrize("path", [parameter(path) for path in GALLERY])
-def test_example(path, capsys, monkeypatch):
+def test_example(path, capsys, monkeypatch, processor_seconds):
     plt = pytest.importorskip("matplotlib.pyplot")
     plt.switch_backend("agg")
     monkeypatch.chdir(path.parent)
+    used = processor_seconds()
     try:
         runpy.run_path(str(path), run_name="__main__")
     finally:
         plt.close("all")
+    assert processor_seconds() - used < LONGEST
     printed = capsys.readouterr().out
     assert re.search(RESULTS[name_of(path)], printed.rstrip()), printed
 

@@ -238,7 +238,7 @@ def test_coderunner_says_of_a_zero_that_it_is_no_mark_yet(quick, tmp_path, capsy
 def test_gradescope_marks_a_submission_as_its_container_does(tmp_path):
     (tmp_path / "answers.json").write_text(json.dumps({"pendulum": RIGHT, "energy": "x_dot**2/2 - k*x**2/2"}))
     command = [sys.executable, str(GRADING / "gradescope" / "grade.py"), str(tmp_path), str(tmp_path)]
-    subprocess.run(command, check=True, timeout=120)
+    subprocess.run(command, check=True)
     pendulum, energy = json.loads((tmp_path / "results.json").read_text())["tests"]
     assert (pendulum["score"], pendulum["status"]) == (1.0, "passed")
     assert (energy["score"], energy["status"]) == (0.5, "failed")  # one of its two terms

@@ -10,6 +10,7 @@ import sysconfig
 import threading
 import time
 import zipfile
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -69,7 +70,6 @@ def run(arguments, folder, code="", **environment):
         input=code,
         capture_output=True,
         text=True,
-        timeout=120,
         env={**kept, "PYTHONPATH": str(ROOT), **environment},
         check=False,
     )
@@ -267,14 +267,10 @@ def test_a_child_whose_parent_was_killed_ends_by_itself():
     ) as parent:
         group = int(parent.stdout.readline())
         os.kill(parent.pid, signal.SIGKILL)
-    deadline = time.monotonic() + 20.0
-    while time.monotonic() < deadline:
-        try:
+    with suppress(ProcessLookupError):
+        while True:  # an orphan that goes on would hang here
             os.killpg(group, 0)
-        except ProcessLookupError:
-            return
-        time.sleep(0.1)
-    pytest.fail("the orphan goes on")
+            time.sleep(0.1)
 
 
 def test_a_process_that_ends_just_when_it_is_asked(monkeypatch):
@@ -294,8 +290,7 @@ def test_a_process_that_ends_just_when_it_is_asked(monkeypatch):
     child.send(lambda: b"", 1.0)
     with pytest.raises(Ended):
         child.receive(time.monotonic() + 10.0)
-    child._listener.join(10.0)
-    assert not child._listener.is_alive()
+    child._listener.join()
     assert raised == []
     child.kill()
 

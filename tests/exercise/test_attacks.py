@@ -22,6 +22,8 @@ from canon.expression.parse import LanguageError, parse_condition, parse_equatio
 from canon.expression.text.scope import Scope
 from canon.process import Late
 
+from .endless_claim import ENDLESS
+
 ROOT = Path(__file__).parents[2]
 GOOD = {
     "id": "good",
@@ -141,7 +143,6 @@ def test_modules_in_the_folder_of_the_answers_are_not_run(tmp_path):
         capture_output=True,
         text=True,
         check=False,
-        timeout=120,
         env={name: value for name, value in os.environ.items() if name != "PYTHONPATH"},
     )  # as the installed command does, which has no folder of its own on its path
     assert not marker.exists()
@@ -151,11 +152,6 @@ def test_modules_in_the_folder_of_the_answers_are_not_run(tmp_path):
 def test_a_killed_worker_leaves_no_process_behind():
     if sys.platform == "win32":
         return
-    long = {
-        **GOOD,
-        "lhs": "(x + t + cos(x) + 1)**60*sin(x)**40",
-        "rhs": "(x + t + cos(x) + 1)**60*(1 - cos(x)**2)**20 + x*0",
-    }
     with Worker() as worker:
         worker.judge(claim_from(GOOD))
         group = worker._child.pid
@@ -163,15 +159,18 @@ def test_a_killed_worker_leaves_no_process_behind():
         limits = Path(f"/proc/{group}/limits")
         if limits.exists():
             assert f"Max address space         {MEMORY}" in limits.read_text("utf-8")
-        worker.judge(Claim("long", "equality-only", long, budget=0.3))
-    deadline = time.monotonic() + 5.0
-    while time.monotonic() < deadline:
-        try:
-            os.killpg(group, 0)
-        except ProcessLookupError:
-            return
+        late = worker.judge(replace(claim_from(ENDLESS), budget=0.3))
+        assert late.known == "its budget of 0.3 s was spent"
+    while runs(group):  # a process of the proofs that goes on would hang here
         time.sleep(0.05)
-    pytest.fail("the process of the proofs goes on")
+
+
+def runs(group):
+    try:
+        os.killpg(group, 0)
+    except ProcessLookupError:
+        return False
+    return True
 
 
 def test_leaving_early_stops_the_workers(processor_seconds):

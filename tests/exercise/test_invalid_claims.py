@@ -22,7 +22,6 @@ def check(*arguments):
         capture_output=True,
         text=True,
         check=False,
-        timeout=120,
     )
 
 

@@ -253,7 +253,7 @@ def test_budget_is_kept(name):
     script = f"{PRELUDE}{setting}\nclaim, domain = {asked}\n{WORKED}\nstart = worked()\n"
     script += "vanishes(claim, domain, 1.0)\n"
     script += "raise SystemExit(0 if worked() - start < 2.0 else 7)\n"
-    ended = subprocess.run([sys.executable, "-c", script], timeout=240, check=False, capture_output=True)
+    ended = subprocess.run([sys.executable, "-c", script], check=False, capture_output=True)
     assert ended.returncode == 0, "over its budget" if ended.returncode == 7 else ended.stderr.decode()
 
 

@@ -63,7 +63,7 @@ print(prove_in_worker([sp.sin(x)**2 + sp.cos(x)**2 - 1], EVERYWHERE, 30.0)[0].ho
 
 def test_works_from_standard_input():
     done = subprocess.run(
-        [sys.executable, "-"], input=PROGRAM, capture_output=True, text=True, timeout=60, env=_environment()
+        [sys.executable, "-"], input=PROGRAM, capture_output=True, text=True, env=_environment()
     )
     assert done.stdout.strip() == "True", done.stderr
 
@@ -94,7 +94,7 @@ def test_interrupt_gets_through(processor_seconds):
         time.sleep(0.3)
         used = processor_seconds()
         running.send_signal(signal.SIGINT)
-        _, errors = running.communicate(timeout=10)
+        _, errors = running.communicate()
     assert processor_seconds() - used < 2.0
     assert "KeyboardInterrupt" in errors
 

@@ -38,7 +38,7 @@ class Slow:
 
     def judge(self, claim):
         self.asked.append(claim)
-        assert self.go.wait(20)
+        self.go.wait()
         return Judgement(claim.id, claim.kind, "undecided", 3.0, known="not looked at")
 
     def close(self):
@@ -295,7 +295,7 @@ def test_no_more_wait_than_may_and_those_who_wait_are_answered(served):
         assert int(refused.headers["retry-after"]) >= 1
         assert client.get("/health").json()["waiting"]["claims"] == 3
         pool_of(client).go.set()
-        first.join(20)
+        first.join()
         assert [one["id"] for one in answers[0].json()["verdicts"]] == ["n0", "n1", "n2"]
         assert client.get("/health").json()["waiting"]["claims"] == 0
 
@@ -315,7 +315,7 @@ def test_a_long_sheet_does_not_keep_others_waiting_for_its_end(served):
             pass
         pool_of(client).go.set()
         for thread in threads:
-            thread.join(20)
+            thread.join()
         assert [claim.id for claim in pool_of(client).asked].index("short") <= 2
 
 
@@ -343,7 +343,7 @@ def logged():
 
 def test_a_client_that_goes_in_the_middle_of_its_request_is_no_fault(served):
     with logged() as lines:
-        with served() as client, socket.create_connection(("127.0.0.1", client.port), 30) as going:
+        with served() as client, socket.create_connection(("127.0.0.1", client.port)) as going:
             head = b"POST /check HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
             going.sendall(head + b"Content-Length: 50\r\n\r\n[")
             while not http_connections(client):
@@ -358,7 +358,7 @@ def test_a_client_that_goes_in_the_middle_of_its_request_is_no_fault(served):
 def test_a_body_that_is_no_http_behind_a_good_head_is_no_fault(served, host):
     """The server answers 400 by itself and hangs up, perhaps before the service has said what it thinks of the head."""
     with logged() as lines:
-        with served() as client, socket.create_connection(("127.0.0.1", client.port), 30) as broken:
+        with served() as client, socket.create_connection(("127.0.0.1", client.port)) as broken:
             broken.sendall(
                 b"POST /check HTTP/1.1\r\nHost: "
                 + host
@@ -373,7 +373,7 @@ def test_a_body_that_is_no_http_behind_a_good_head_is_no_fault(served, host):
 @pytest.mark.parametrize("said", [b"", b"POST /check HTTP/1.1\r\nHost: local"])
 def test_a_connection_on_which_no_request_comes_is_closed(served, monkeypatch, said):
     monkeypatch.setattr(http_server, "IDLE", 0.3)
-    with served() as client, socket.create_connection(("127.0.0.1", client.port), 30) as silent:
+    with served() as client, socket.create_connection(("127.0.0.1", client.port)) as silent:
         silent.sendall(said)
         assert silent.recv(100) == b""
 
@@ -401,10 +401,10 @@ def test_a_client_that_does_not_take_its_answer_is_let_go(monkeypatch, running, 
 
     with (
         running(Starlette(routes=[Route("/much", much), Route("/", little)])) as client,
-        socket.create_connection(("127.0.0.1", client.port), 30) as deaf,
+        socket.create_connection(("127.0.0.1", client.port)) as deaf,
     ):
         deaf.sendall(b"GET /much HTTP/1.1\r\nHost: localhost\r\n\r\n")
-        assert whole or ended.wait(30)
+        assert whole or ended.wait()
         while client.get("/").content != b"here" or http_connections(client) > 0:
             pass  # what keeps a connection that nobody reads would hang here
         got = 0
@@ -419,7 +419,7 @@ def test_a_client_that_takes_its_answer_slowly_gets_all_of_it(running):
 
     with (
         running(Starlette(routes=[Route("/", much)])) as client,
-        socket.create_connection(("127.0.0.1", client.port), 30) as slow,
+        socket.create_connection(("127.0.0.1", client.port)) as slow,
     ):
         slow.sendall(b"GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n")
         found = 0

@@ -87,7 +87,7 @@ def test_a_cluster_of_which_a_worker_is_killed_gives_the_same(tmp_path, cluster)
     run_study(STUDY, here)
     store = Store(tmp_path / "cluster.sqlite")
     with distributed.Client(scheduler_file=str(cluster), timeout=60) as client:
-        client.wait_for_workers(2, timeout=60)
+        client.wait_for_workers(2)
         pids = client.run(os.getpid)
         assert len(set(pids.values())) == 2
         legs = []
@@ -98,7 +98,7 @@ def test_a_cluster_of_which_a_worker_is_killed_gives_the_same(tmp_path, cluster)
                 os.kill(next(iter(pids.values())), signal.SIGKILL)
 
         status = run_study(STUDY, store, client.get_executor(), progress=kill_one, checkpoint_seconds=0.0)
-        assert one_worker_left(client)
+        wait_for_one_worker(client)
         file = tmp_path / "small.toml"
         file.write_text('[[study]]\nsystem = "henon-heiles"\nmethod = "verlet"\nstep = 0.1\nspan= 300\n')
         assert main(["study", "run", str(file), "--dask", client.scheduler.address]) == 0
@@ -107,13 +107,10 @@ def test_a_cluster_of_which_a_worker_is_killed_gives_the_same(tmp_path, cluster)
     assert outcomes(store) == outcomes(here)
 
 
-def one_worker_left(client):
-    """Whether the scheduler has noticed the worker that was killed: it hears of it some time after."""
-    for _ in range(300):
-        if len(client.scheduler_info()["workers"]) == 1:
-            return True
+def wait_for_one_worker(client):
+    """Return once the scheduler has noticed the worker that was killed: it hears of it some time after."""
+    while len(client.scheduler_info()["workers"]) != 1:
         time.sleep(0.1)
-    return False
 
 
 LONG = Study.of(
@@ -132,7 +129,7 @@ def test_a_worker_killed_in_mid_case_changes_no_bit_of_what_is_kept(tmp_path, cl
     keep, here, there = {"extent": extent}, tmp_path / "here.sqlite", Store(tmp_path / "cluster.sqlite")
     run_study(LONG, here, keep=keep)
     with distributed.Client(scheduler_file=str(cluster), timeout=60) as client:
-        client.wait_for_workers(2, timeout=60)
+        client.wait_for_workers(2)
         pids, killed = client.run(os.getpid), []
 
         def kill_a_busy_one(status):
@@ -153,7 +150,7 @@ def test_a_worker_killed_in_mid_case_changes_no_bit_of_what_is_kept(tmp_path, cl
             in_flight=2,
             keep=keep,
         )
-        assert one_worker_left(client)
+        wait_for_one_worker(client)
     (begun,) = killed
     assert all(0 < part < 8 for part in begun.values())
     assert (status.finished, status.failed, status.pending) == (2, 0, 0)
@@ -182,14 +179,14 @@ def test_a_case_beyond_the_memory_limit_is_told_and_the_others_finish(tmp_path, 
     with distributed.Client(
         scheduler_file=str(start(["--memory-limit", "1GB"], ["--memory-limit", "1GB"])), timeout=60
     ) as client:
-        client.wait_for_workers(2, timeout=60)
+        client.wait_for_workers(2)
         told = (
             r"1 case took more memory than workers have.*simple-pendulum.*give workers more memory.*run again"
         )
         with pytest.raises(StudyError, match=told):
             run_study(study, there, client.get_executor(), keep={"large": large_for_pendulums}, in_flight=2)
         assert status_of(Store(there)).finished == 1
-        client.wait_for_workers(1, timeout=60)
+        client.wait_for_workers(1)
         assert (
             run_study(study, there, client.get_executor(), keep={"extent": extent}, in_flight=2).finished == 3
         )

@@ -56,7 +56,7 @@ def kill_after(program, lines, seconds=0.0):
     seen = sum(bool(program.stdout.readline()) for _ in range(lines))
     time.sleep(seconds)
     program.send_signal(signal.SIGKILL)
-    status = program.wait(60)
+    status = program.wait()
     program.stdout.close()
     return seen == lines and status == -signal.SIGKILL
 
@@ -114,7 +114,7 @@ def test_two_processes_on_one_study(tmp_path, uninterrupted):
     path = tmp_path / "shared.sqlite"
     both = [begin(path) for _ in range(2)]
     for program in both:
-        program.communicate(timeout=120)
+        program.communicate()
         assert program.returncode == 0
     assert status_of(Store(path)).finished == 6
     assert outcomes(Store(path)) == uninterrupted
@@ -144,7 +144,7 @@ except StoreError as error:
 def test_a_disk_that_fills_up_in_mid_study(tmp_path, uninterrupted):
     """A limit on the size of files stands in for a full disk."""
     path = tmp_path / "full.sqlite"
-    said, _ = begin(path, FULL_DISK).communicate(timeout=120)
+    said, _ = begin(path, FULL_DISK).communicate()
     assert "the disk is full" in said
     assert "what was finished before is kept: make room and run again" in said
     store = Store(path)

@@ -69,7 +69,7 @@ for i in range(40):
 def test_two_processes_on_one_new_file(tmp_path):
     path = tmp_path / "shared.sqlite"
     writers = [subprocess.Popen([sys.executable, "-c", WRITER, str(path), name]) for name in "ab"]
-    assert [writer.wait(60) for writer in writers] == [0, 0]
+    assert [writer.wait() for writer in writers] == [0, 0]
     assert len(Store(path).records()) == 120
     assert Store(path).pending() == ()
 
@@ -228,7 +228,7 @@ def test_killed_inside_a_transaction_nothing_of_it_stays(store):
     with subprocess.Popen(code, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as program:
         assert program.stdout.readline() == b"writing\n"
         program.kill()
-        program.wait(30)
+        program.wait()
     assert Store(store.path).cases() == {f"k{i}": f"inputs {i}" for i in range(4)}
     assert store.checkpoint("k1") == "kept"
 
