@@ -165,10 +165,23 @@ def test_a_claim_whose_answer_stands_in_a_list_is_named():
     assert told.known.startswith("key F: stands beside the relation gauge only")
 
 
+TEXTS = st.text(alphabet=LETTERS, max_size=60) | st.text(max_size=30)
+
+
+@settings(max_examples=1_000, deadline=None)
+@given(TEXTS)
+def test_any_text_is_an_expression_or_its_fault_has_a_column(text):
+    read_or_placed(text)
+
+
 @pytest.mark.slow
 @settings(max_examples=20_000, deadline=None)
-@given(st.text(alphabet=LETTERS, max_size=60) | st.text(max_size=30))
+@given(TEXTS)
 def test_twenty_thousand_texts(text):
+    read_or_placed(text)
+
+
+def read_or_placed(text):
     column = 1
     try:
         parse_expression(text, Scope())
@@ -177,7 +190,6 @@ def test_twenty_thousand_texts(text):
     assert 1 <= column <= len(text) + 1
 
 
-@pytest.mark.slow
 @settings(max_examples=2_000, deadline=None)
 @given(st.binary(max_size=200) | st.text(alphabet=JSON_LIKE, max_size=200).map(str.encode), st.booleans())
 def test_any_bytes_are_a_sheet_or_no_sheet(data, toml):

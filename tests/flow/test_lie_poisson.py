@@ -504,7 +504,6 @@ def test_studies_take_rotating_bodies(tmp_path):
 numbers = st.floats(-2, 2).map(lambda z: round(z, 3))
 
 
-@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::canon.AccuracyWarning")
 @settings(max_examples=50, deadline=None)
 @given(

@@ -325,8 +325,7 @@ def test_a_chaotic_orbit_has_the_same_exponent_by_the_splitting():
 factors = st.integers(-3, 3)
 
 
-@pytest.mark.slow
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50, deadline=None)  # a third of a second each: four compiled loops
 @given(
     first=st.lists(factors, min_size=5, max_size=5),
     second=st.lists(factors, min_size=5, max_size=5),
