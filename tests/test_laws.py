@@ -32,6 +32,19 @@ def test_the_laws_are_found():
     assert len(LAWS) > 110
 
 
+MORE_OF_THE_SAME = {
+    "tests/exercise/test_fuzz.py::test_twenty_thousand_texts":
+        "tests/exercise/test_fuzz.py::test_any_text_is_an_expression_or_its_fault_has_a_column",
+}  # fmt: skip
+"""Laws that are slow, each with the same of fewer examples that every run has."""
+
+
+def test_every_run_has_every_law():
+    slow = {name for name, lines in LAWS.items() if any("mark.slow" in line for line in lines)}
+    assert slow == set(MORE_OF_THE_SAME)
+    assert set(MORE_OF_THE_SAME.values()) <= set(LAWS) - slow
+
+
 def own_examples(name):
     """Return how many examples a law draws by itself, and the line that says so."""
     for line in LAWS[name]:

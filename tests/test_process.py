@@ -1,6 +1,7 @@
 """The processes that judge and prove run canon and what it rests on, and nothing else, wherever they start."""
 
 import io
+import math
 import os
 import shutil
 import signal
@@ -213,14 +214,14 @@ def test_what_canon_rests_on_comes_from_where_it_is_in_use(tmp_path, monkeypatch
 @pytest.mark.skipif(sys.platform == "win32", reason="no groups of processes")
 def test_a_killed_child_is_gone_and_says_so():
     child = Child("canon.proof.worker.proof_process", leads=True)
-    assert child.receive(time.monotonic() + 60) == b""
+    assert child.receive(math.inf) == b""
     assert child.usable
     with pytest.raises(Late):
         child.receive(time.monotonic() + 0.2)
     child.kill()
     assert not child.usable
     with pytest.raises(Ended):
-        child.receive(time.monotonic() + 5)
+        child.receive(math.inf)
     with pytest.raises(ProcessLookupError):
         os.killpg(child.pid, 0)
 
@@ -228,21 +229,21 @@ def test_a_killed_child_is_gone_and_says_so():
 def test_a_child_that_cannot_start_says_so():
     child = Child("canon.no_such_module")
     with pytest.raises(Ended):
-        child.receive(time.monotonic() + 60)
+        child.receive(math.inf)
     child.kill()
     assert not child.usable
 
 
 def test_what_cannot_be_sent_is_told():
     child = Child("canon.proof.worker.proof_process")
-    assert child.receive(time.monotonic() + 60) == b""
+    assert child.receive(math.inf) == b""
 
     def too_deep():
         raise RecursionError
 
     child.send(too_deep, 1.0)
     with pytest.raises(Ended, match="RecursionError"):
-        child.receive(time.monotonic() + 10)
+        child.receive(math.inf)
     child.kill()
 
 
@@ -276,7 +277,7 @@ def test_a_child_whose_parent_was_killed_ends_by_itself():
 def test_a_process_that_ends_just_when_it_is_asked(monkeypatch):
     """Its listener does not trip over the thread that was to ask, and who waits is told."""
     child = Child("canon.exercise.judging_process")
-    child.receive(time.monotonic() + 60.0)
+    child.receive(math.inf)
     raised, start = [], threading.Thread.start
 
     def late(thread):
@@ -289,7 +290,7 @@ def test_a_process_that_ends_just_when_it_is_asked(monkeypatch):
     monkeypatch.setattr(threading.Thread, "start", late)
     child.send(lambda: b"", 1.0)
     with pytest.raises(Ended):
-        child.receive(time.monotonic() + 10.0)
+        child.receive(math.inf)
     child._listener.join()
     assert raised == []
     child.kill()

@@ -36,6 +36,10 @@ def outcomes(store):
     return {key: (record.outcome, record.failure) for key, record in store.records().items()}
 
 
+BEYOND_THE_GUARD = 600.0
+"""Seconds that dask waits for its scheduler: more than a test may take."""
+
+
 @pytest.fixture
 def start(tmp_path):
     """Return what starts a scheduler and workers, each with further arguments, and returns the scheduler's file."""
@@ -86,7 +90,7 @@ def test_a_cluster_of_which_a_worker_is_killed_gives_the_same(tmp_path, cluster)
     here = Store(tmp_path / "here.sqlite")
     run_study(STUDY, here)
     store = Store(tmp_path / "cluster.sqlite")
-    with distributed.Client(scheduler_file=str(cluster), timeout=60) as client:
+    with distributed.Client(scheduler_file=str(cluster), timeout=BEYOND_THE_GUARD) as client:
         client.wait_for_workers(2)
         pids = client.run(os.getpid)
         assert len(set(pids.values())) == 2
@@ -128,7 +132,7 @@ def test_a_worker_killed_in_mid_case_changes_no_bit_of_what_is_kept(tmp_path, cl
     """Two cases are under way, one at least with a checkpoint; the worker that is killed is running one of them."""
     keep, here, there = {"extent": extent}, tmp_path / "here.sqlite", Store(tmp_path / "cluster.sqlite")
     run_study(LONG, here, keep=keep)
-    with distributed.Client(scheduler_file=str(cluster), timeout=60) as client:
+    with distributed.Client(scheduler_file=str(cluster), timeout=BEYOND_THE_GUARD) as client:
         client.wait_for_workers(2)
         pids, killed = client.run(os.getpid), []
 
@@ -177,7 +181,8 @@ def test_a_case_beyond_the_memory_limit_is_told_and_the_others_finish(tmp_path, 
     )
     here, there = tmp_path / "here.sqlite", tmp_path / "cluster.sqlite"
     with distributed.Client(
-        scheduler_file=str(start(["--memory-limit", "1GB"], ["--memory-limit", "1GB"])), timeout=60
+        scheduler_file=str(start(["--memory-limit", "1GB"], ["--memory-limit", "1GB"])),
+        timeout=BEYOND_THE_GUARD,
     ) as client:
         client.wait_for_workers(2)
         told = (
