@@ -1,5 +1,7 @@
 """Generated examples are the same in every run of CI, elsewhere new ones; a test has at most five minutes."""
 
+from __future__ import annotations
+
 import gc
 import os
 import shutil
@@ -8,9 +10,13 @@ import sys
 import time
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import settings
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
 
 settings.register_profile("ci", derandomize=True, deadline=None)
 settings.register_profile("here", deadline=None)  # a busy machine proves nothing against a law
@@ -80,25 +86,25 @@ def pytest_collection_finish():
 
 
 @pytest.hookimpl(wrapper=True)
-def pytest_runtest_setup(item):
+def pytest_runtest_setup(item: pytest.Item) -> Generator[None, object, object]:
     with in_time(item):
         return (yield)
 
 
 @pytest.hookimpl(wrapper=True)
-def pytest_runtest_call(item):
+def pytest_runtest_call(item: pytest.Item) -> Generator[None, object, object]:
     with in_time(item):
         return (yield)
 
 
 @pytest.hookimpl(wrapper=True)
-def pytest_runtest_teardown(item):
+def pytest_runtest_teardown(item: pytest.Item) -> Generator[None, object, object]:
     with in_time(item):
         return (yield)
 
 
 @contextmanager
-def in_time(item):
+def in_time(item: pytest.Item) -> Generator[None]:
     """Fail a test that has not ended in time, with where it was, so that it does not hold up the others.
 
     Tests wait for processes and threads without bounds of their own, and what never comes is met here.
@@ -110,7 +116,7 @@ def in_time(item):
     has_more = item.name == DOCUMENTATION or item.config.getoption("examples", None)
     left, longest = PATIENCE - 1, LONGEST * (3 if has_more else 1)
 
-    def give_up(*_):
+    def give_up(*_: object) -> None:
         nonlocal left
         if left and os.getloadavg()[0] > (os.cpu_count() or 1):
             left -= 1

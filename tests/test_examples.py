@@ -5,8 +5,12 @@ from __future__ import annotations
 import re
 import runpy
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 GALLERY = sorted(path for path in EXAMPLES.glob("*/*.py") if path.parent.name not in ("grading", "sheets"))
@@ -83,7 +87,12 @@ def test_every_script_has_a_result():
 
 
 @pytest.mark.parametrize("path", [parameter(path) for path in GALLERY])
-def test_example(path, capsys, monkeypatch, processor_seconds):
+def test_example(
+    path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    processor_seconds: Callable[[], float],
+) -> None:
     plt = pytest.importorskip("matplotlib.pyplot")
     plt.switch_backend("agg")
     monkeypatch.chdir(path.parent)
