@@ -58,6 +58,7 @@ def test_the_recipe_for_conda_asks_for_what_the_wheel_does():
     given = conda_bounds(recipe["requirements"]["run"])
     assert given == bounds(PROJECT["dependencies"])
     assert recipe["context"]["version"] == canon.__version__
+    assert f">={recipe['context']['python_min']}" == PROJECT["requires-python"]
     (entry,) = recipe["build"]["python"]["entry_points"]
     assert entry == f"canon = {PROJECT['scripts']['canon']}"
 
