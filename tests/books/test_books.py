@@ -1,4 +1,4 @@
-"""Printed results of textbooks by section, each verdict as the reader of the book expects it; wrong twins fail."""
+"""Results of textbooks by section, each verdict as the reader of the book expects it; wrong twins fail."""
 
 import re
 from pathlib import Path
@@ -21,7 +21,7 @@ RESULTS = {
     "sussman_wisdom": 77,
     "taylor": 77,
 }
-"""How many printed results of each book are claims; the twins are not counted."""
+"""How many results of each book are claims; the twins are not counted."""
 
 QUICK = re.compile(
     r"arnold-14-|goldstein-9\.2|hand_finch-1\.9|lichtenberg_lieberman-4\.|ferraz_mello-C|jose_saletan-4\.2|landau_lifshitz-14-2|sussman_wisdom-1\.10|taylor-11\.2"
