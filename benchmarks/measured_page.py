@@ -8,7 +8,13 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+Rows = list[tuple[str, ...]]
+Line = list[tuple[float, float]]
 FIGURES = Path(__file__).parents[1] / "docs" / "figures"
 FOLDED = "<details>\n<summary>{summary}</summary>\n\n```text\n{printed}\n```\n\n</details>\n"
 
@@ -24,9 +30,9 @@ class Table:
     row: str
     under: str = ""
 
-    def rows(self, printed: str) -> list[tuple[str, ...]]:
+    def rows(self, printed: str) -> Rows:
         """Return the cells of all rows in what was printed."""
-        found: list[tuple[str, ...]] = []
+        found: Rows = []
         head: tuple[str, ...] = ()
         for line in printed.splitlines():
             above = re.search(self.under, line) if self.under else None
@@ -47,10 +53,19 @@ class Table:
         )
 
 
+def pyplot() -> Any:
+    """Return matplotlib's pyplot, which opens no window."""
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    import matplotlib.pyplot as plt
+
+    return plt
+
+
 @dataclass(frozen=True)
 class Plot:
-    """A figure from one table: two of its columns, as a line over logarithmic axes or as bars with "
-    "their names."""
+    """A figure from one table: two of its columns, as a line over logarithmic axes or as bars with their names."""
 
     table: int
     x: int
@@ -58,13 +73,10 @@ class Plot:
     caption: str
     bars: bool = False
 
-    def draw(self, table: Table, printed: str, name: str) -> str:
+    def draw(self, tables: tuple[Table, ...], printed: str, name: str) -> str:
         """Draw into docs/figures, and return the line of Markdown that shows it."""
-        import matplotlib as mpl
-
-        mpl.use("Agg")
-        import matplotlib.pyplot as plt
-
+        plt = pyplot()
+        table = tables[self.table]
         rows = table.rows(printed)
         values = [float(re.sub(r"[^\d.e+-]", "", row[self.y])) for row in rows]
         height = 0.6 + 0.24 * len(rows) if self.bars else 3.2
@@ -85,18 +97,88 @@ class Plot:
 
 
 @dataclass(frozen=True)
+class Lines:
+    """A figure of several lines over logarithmic axes, or of marks alone beside the line where x and y are equal.
+
+    ``lines`` makes them, by their names, of the rows of all tables; they are shared out among the panels.
+    """
+
+    lines: Callable[[list[Rows]], dict[str, Line]]
+    x: str
+    y: str
+    caption: str
+    panels: int = 1
+    equal: str = ""
+
+    def draw(self, tables: tuple[Table, ...], printed: str, name: str) -> str:
+        """Draw into docs/figures, and return the line of Markdown that shows it."""
+        plt = pyplot()
+        from canon.plot.style import COLOURS, GREY, LINES, MARKERS
+
+        lines = list(self.lines([table.rows(printed) for table in tables]).items())
+        each = -(-len(lines) // self.panels)
+        figure, panels = plt.subplots(
+            1, self.panels, figsize=(7.0, 4.8), layout="constrained", sharey=True, squeeze=False
+        )
+        for k, axes in enumerate(panels.flat):
+            for i, (label, points) in enumerate(lines[each * k : each * (k + 1)]):
+                again, colour = divmod(i, len(COLOURS))
+                look = {"color": COLOURS[colour], "marker": MARKERS[colour], "ms": 5}
+                drawn = "" if self.equal else LINES[again]
+                axes.loglog(*zip(*points, strict=True), ls=drawn, label=label, **look)
+            if self.equal:
+                ends = axes.get_xlim()
+                axes.loglog(ends, ends, "--", color=GREY, label=self.equal, zorder=0)
+            axes.set_xlabel(self.x)
+            axes.spines[["top", "right"]].set_visible(False)
+            axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), frameon=False, fontsize="small")
+        panels[0, 0].set_ylabel(self.y)
+        figure.savefig(FIGURES / f"measured_{name}.png", dpi=120, metadata={"Software": None})
+        plt.close(figure)
+        return f"![{self.caption}](figures/measured_{name}.png)\n\n"
+
+
+def numbers(cell: str) -> list[float]:
+    return [float(word.replace(",", "")) for word in cell.split()]
+
+
+def seconds_by_size(tables: list[Rows]) -> dict[str, Line]:
+    """Return how long each kind of thing took, by its sizes."""
+    sizes = dict(tables[1])
+    return {
+        what: list(zip(numbers(sizes[what]), numbers(seconds), strict=True)) for what, seconds, _ in tables[0]
+    }
+
+
+def errors_by_steps(tables: list[Rows]) -> dict[str, Line]:
+    """Return the energy error of each method in u√n, by n: after a thousandth of each run, and at its end."""
+    found: dict[str, Line] = {}
+    for method, steps_a_period, steps, _, walk, end, *_ in tables[0]:
+        line = found.setdefault(f"{method}, {steps_a_period} steps a period", [])
+        line += [(float(steps) / 1000, float(walk)), (float(steps), float(end))]
+    return {name: sorted(line) for name, line in found.items()}
+
+
+def errors_by_wish(tables: list[Rows]) -> dict[str, Line]:
+    """Return the errors that were found, by the errors that were wanted, for each thing that was to be accurate."""
+    found: dict[str, Line] = {}
+    for _, _, of_what, wanted, _, _, error, *_ in tables[1]:
+        name = of_what if of_what in ("energy", "position") else "another constant of the motion"
+        found.setdefault(name, []).append((float(wanted), float(error)))
+    return found
+
+
+@dataclass(frozen=True)
 class Section:
-    """What a section says: a sentence on what follows, which may take numbers that ``told`` finds, "
-    "tables, a plot."""
+    """What a section says: a sentence on what follows, which may take numbers that ``told`` finds, tables, a plot."""
 
     follows: str
     tables: tuple[Table, ...] = ()
-    plot: Plot | None = None
+    plot: Plot | Lines | None = None
     told: str = ""
 
     def page(self, title: str, command: str, printed: str, name: str) -> str:
-        """Return the section as Markdown; an empty line that is not of the output would end a "
-        "pattern, so none is."""
+        """Return the section as Markdown; an empty line that is not of the output would end a pattern, so none is."""
         found = re.search(self.told, printed, re.MULTILINE | re.DOTALL) if self.told else None
         if self.told and not found:
             raise ValueError(f"{name}: the output does not say what is told of it, {self.told!r}")
@@ -104,7 +186,7 @@ class Section:
         tables = "".join(table.markdown(printed) for table in self.tables)
         lines = [line for line in printed.splitlines() if line.startswith("|")]
         tables += re.sub(r"\n(?=\|[^\n]*\n\|---)", "\n\n", "\n".join(lines)) + "\n\n" if lines else ""
-        drawn = self.plot.draw(self.tables[self.plot.table], printed, name) if self.plot else ""
+        drawn = self.plot.draw(self.tables, printed, name) if self.plot else ""
         folded = FOLDED.format(summary="What the script printed", printed=printed)
         return f"## {title}\n\n{sentence}\n\n{tables}{drawn}{command}\n\n{folded}"
 
@@ -261,6 +343,13 @@ SECTIONS = {
             ),
             Table(("what", "sizes"), r"^  size +(\S.*)$", under=r"^(\w.*)$"),
         ),
+        Lines(
+            seconds_by_size,
+            "size",
+            "processor seconds",
+            "Processor seconds by size, both logarithmic",
+            panels=2,
+        ),
     ),
     "sections": Section(
         "Points of many orbits side by side lie on the section to {0}; met as events of one orbit each takes {1} times "
@@ -389,6 +478,13 @@ SECTIONS = {
                 ),
                 r"^(\S+) +([\d.]+) +(\S+) +(\d+) +([\d.]+) +([\d.]+) +([\d.]+ ± [\d.]+) +\S+ +(\S+) +\d+$",
             ),
+        ),
+        Lines(
+            errors_by_steps,
+            "steps n",
+            "energy error / u√n",
+            "Energy error (root mean square) in u√n by the steps n: after a thousandth of each run, and at its end; "
+            "level where Brouwer's law holds",
         ),
     ),
     "headline": Section(
@@ -594,22 +690,23 @@ SECTIONS = {
         (Table(("attack", "how many", "bad"), r"^(\S.*?): (\d+): .*; (\d+) bad"),),
     ),
     "tested_lines": Section(
-        "Of all lines and branches the tests run {0} %, and of each room 95 % or more; what is left are refusals and "
-        "cases that no test has reached. Of the modules beside the rooms (*canon*) more is run than is counted: what "
-        "judges and proves runs in processes that end by a signal, with their parent or when their time is over, and "
-        "such a process tells nothing of what it ran. The rest there is for Windows and macOS.",
+        "Lines and branches together, the tests run {1} % of all, and 95 % or more of each room; of the branches alone "
+        "they take {0} %. What is left are refusals and cases that no test has reached. Of the modules beside the "
+        "rooms (*canon*) more is run than is counted: what judges and proves runs in processes that end by a signal, "
+        "with their parent or when their time is over, and such a process tells nothing of what it ran. The rest there "
+        "is for Windows and macOS.",
         (
             Table(
-                ("room", "lines", "not run", "branches", "half run", "% run"),
-                r"^(\w+) +(\d+) +(\d+) +(\d+) +(\d+) +([\d.]+) %$",
+                ("room", "lines", "not run", "branches", "not taken", "branches taken, %", "both, %"),
+                r"^(\w+) +(\d+) +(\d+) +(\d+) +(\d+) +([\d.]+) % +([\d.]+) %$",
             ),
         ),
-        told=r"^all .* ([\d.]+) %$",
+        told=r"^all .* ([\d.]+) % +([\d.]+) %$",
     ),
     "mutation": Section(
-        "Of {0} small changes of the code, drawn by a seed, {1} change what canon does, and its tests notice {2} % of "
-        "those. Each of the others was read; why it changes nothing, or which test was written for it, stands in the "
-        "output.",
+        "Of {0} small changes of the code, drawn by a seed, {2} change what canon does, and its tests notice {3} % of "
+        "those, {1} of them by tests that were written after the survivors had been read. Each of the others was read; "
+        "why it changes nothing, or which test was written for it, stands in the output.",
         (
             Table(
                 (
@@ -625,7 +722,7 @@ SECTIONS = {
                 r"^(\w[\w ]*?) +(\d+) +(\d+) +(\d+) +(\d+) +(\d+) +(\d+) +([\d.]+|–) %$",
             ),
         ),
-        told=r"^all +\d+ +(\d+) .*?^(\d+) change what canon does, ([\d.]+) %",
+        told=r"^all +\d+ +(\d+) +\d+ +(\d+) .*?^(\d+) change what canon does, ([\d.]+) %",
     ),
     "choose": Section(
         "The accuracy was kept in {0} cases, the cost was within a factor of 2 of what was "
@@ -652,6 +749,13 @@ SECTIONS = {
                 r"^(\S+) (\de\+\d+) (\S.*?) +(1e-\d+)  (\S.*?) +[a-z]+  (\S+) (\S+) +([\d.]+) +([\d.]+) +([\d.]+)  "
                 r"\S.*? +(\d+\.\d)(?:  [A-Z ]+)?$",
             ),
+        ),
+        Lines(
+            errors_by_wish,
+            "error that was wanted",
+            "error that was found",
+            "Error that was found by the error that was wanted, both logarithmic; none lies above the broken line",
+            equal="as large as it was wanted",
         ),
         told=r"accuracy kept .*?: (\d+ of \d+).*?predicted: (\d+ of \d+).*?of the search: (\d+ of \d+)",
     ),

@@ -72,12 +72,13 @@ def report(shown: str) -> None:
     table = [
         f"{date.today()}, Python {platform.python_version()}, canon at commit {_commit()}",
         *asked,
-        f"{'room':12}{'lines':>8}{'not run':>9}{'branches':>10}{'half run':>10}{'run':>9}",
+        f"{'room':12}{'lines':>8}{'not run':>9}{'branches':>10}{'not taken':>11}{'branches taken':>16}{'both':>9}",
     ]
     for room, numbers in [*sorted(rooms.items()), ("all", sum(rooms.values(), Numbers()))]:
+        taken = 100 * numbers.n_executed_branches / numbers.n_branches
         table.append(
             f"{room:12}{numbers.n_statements:8}{numbers.n_missing:9}{numbers.n_branches:10}"
-            f"{numbers.n_partial_branches:10}{numbers.pc_covered:7.1f} %"
+            f"{numbers.n_missing_branches:11}{taken:14.1f} %{numbers.pc_covered:7.1f} %"
         )
     table += ["", f"{len(short)} modules below 95 %, of which below {LEAST} %:"]
     table += [f"{share:5.1f} %  {name}" for share, name in sorted(short) if share < LEAST]
