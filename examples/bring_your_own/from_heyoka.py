@@ -7,6 +7,7 @@ energy; then the error is measured as well.
 """
 
 import heyoka as hy
+import matplotlib.pyplot as plt
 import numpy as np
 from sympy import Rational, cos
 
@@ -29,6 +30,17 @@ print(drift(run))
 
 # %%
 # Another precision is a word:
+figure, (motion, energy) = plt.subplots(1, 2, figsize=(8, 3), layout="constrained")
 for precision in ("double", "quad"):
     run = propagate(pendulum, (0, 50), [2.5, 0.0], precision=precision)
-    print(f"{precision:7} max |ΔE/E| = {float(abs(run.energy_error).max()):.0e}")
+    error = abs(run.energy_error).astype(float)
+    energy.semilogy(run.t[1:], error[1:], label=precision)
+    print(f"{precision:7} max |ΔE/E| = {error.max():.0e}")
+
+# %%
+# The motion of the list of pairs, where it ended by hand, and what only an energy tells:
+motion.plot(taken.t, taken.y[0])
+motion.plot(by_hand.time, by_hand.state[0], "ro")
+motion.set(xlabel="t", ylabel="x", title="Taken as it is; red: its end by hand")
+energy.set(xlabel="t", ylabel="|ΔE/E|", title="The error of its energy")
+energy.legend(loc="center right")

@@ -6,7 +6,9 @@ A solid wheel rolls down a slope. Lagrange's book takes the rolling condition in
 keeps the friction and throws it out at the end. Are the equations the same? That is a question with a verdict.
 """
 
-from sympy import Symbol, sin
+import matplotlib.pyplot as plt
+import numpy as np
+from sympy import Symbol, lambdify, pi, sin, solve
 
 from canon import Lagrangian, PlanarBody, coordinates, equivalent_equations, kinetic_energy, parameters
 
@@ -32,6 +34,21 @@ print(equivalent_equations(newtons, with_friction, unknowns))
 # The wrong friction, half of the weight's part along the slope, is found out with numbers:
 wrong = [*lagranges.equations, phi.ddot - s.ddot / R, F - m * g * sin(alpha) / 2]
 print(equivalent_equations(newtons, wrong, unknowns))
+
+# %%
+# Newton's equations for any friction: only where it is a third of the weight's part along the slope does the rim
+# turn as fast as the wheel advances, and there the acceleration is Lagrange's.
+free = solve(newtons[:2], [s.ddot, phi.ddot])
+numbers = {m: 1, R: 1, g: 1, alpha: pi / 2}
+along, rim = (lambdify(F, each.subs(numbers)) for each in (free[s.ddot], R * free[phi.ddot]))
+friction = np.array([0, 0.6])
+figure, axes = plt.subplots(figsize=(7, 3), layout="constrained")
+axes.plot(friction, along(friction), label="s̈, Newton")
+axes.plot(friction, rim(friction), label="R φ̈, Euler")
+axes.axhline(lagranges.accelerations[0].subs(numbers), color="grey", ls="--", label="s̈, Lagrange")
+axes.plot([0.5, 0.5], [along(0.5), rim(0.5)], "rx", label="the wrong friction")
+axes.set(xlabel="F / (m g sin α)", ylabel="acceleration / (g sin α)", title="Two books, one point")
+axes.legend(loc="center left", bbox_to_anchor=(1, 0.5))
 
 # %%
 # The result that one remembers: two thirds of the acceleration without friction.
