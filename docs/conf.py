@@ -200,9 +200,12 @@ def public_names() -> str:
     lines = [
         "# Every public name",
         "",
-        "Written from `canon/__init__.py` when the pages are built. Scenes and",
+        "Written when the pages are built, from the stubs `canon/__init__.pyi` and `canon/ROOM/__init__.pyi`. What most",
+        "people need is imported from `canon`, as `from canon import propagate`; the rest from its room, as",
+        "`from canon.flow import lyapunov_spectrum`; scenes and pictures from `canon.scene` and `canon.plot`. The page",
+        "of each name begins with the line that imports it.",
+        "",
     ]
-    lines += ["pictures are imported from `canon.scene` and `canon.plot`, everything else from `canon`.", ""]
     for room, names in sorted(by_room.items(), key=lambda item: list(SUBJECTS).index(item[0])):
         about = (importlib.import_module(f"canon.{room}").__doc__ or "").splitlines()[0]
         lines += [f"## {SUBJECTS[room]}", "", about, ""]
