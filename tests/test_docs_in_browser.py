@@ -119,8 +119,9 @@ CONTRAST = """
 const part = (c) => { c /= 255; return c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4; };
 const light = (rgb) => 0.2126 * part(rgb[0]) + 0.7152 * part(rgb[1]) + 0.0722 * part(rgb[2]);
 const dot = new OffscreenCanvas(1, 1).getContext('2d', {willReadFrequently: true});
-const colour = (text) => { dot.clearRect(0, 0, 1, 1); dot.fillStyle = text; dot.fillRect(0, 0, 1, 1);
+const read = (text) => { dot.clearRect(0, 0, 1, 1); dot.fillStyle = text; dot.fillRect(0, 0, 1, 1);
   return [...dot.getImageData(0, 0, 1, 1).data]; };
+const known = {}, colour = (text) => known[text] ??= read(text);
 const over = (top, below) => [0, 1, 2].map((k) => (top[3] * top[k] + (255 - top[3]) * below[k]) / 255);
 const behind = (one) => { const found = [];
   for (let at = one; at; at = at.parentElement) found.unshift(colour(getComputedStyle(at).backgroundColor));
