@@ -143,10 +143,13 @@ def numbers(cell: str) -> list[float]:
 
 
 def seconds_by_size(tables: list[Rows]) -> dict[str, Line]:
-    """Return how long each kind of thing took, by its sizes."""
+    """Return how long each kind of thing took, by its sizes; less than the least that is printed is left out."""
     sizes = dict(tables[1])
     return {
-        what: list(zip(numbers(sizes[what]), numbers(seconds), strict=True)) for what, seconds, _ in tables[0]
+        what: [
+            (size, took) for size, took in zip(numbers(sizes[what]), numbers(seconds), strict=True) if took
+        ]
+        for what, seconds, _ in tables[0]
     }
 
 

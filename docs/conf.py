@@ -200,8 +200,8 @@ def public_names() -> str:
     lines = [
         "# Every public name",
         "",
-        "Written when the pages are built, from the stubs `canon/__init__.pyi` and `canon/ROOM/__init__.pyi`. What most",
-        "people need is imported from `canon`, as `from canon import propagate`; the rest from its room, as",
+        "Written when the pages are built, from the stubs `canon/__init__.pyi` and `canon/ROOM/__init__.pyi`. What",
+        "most people need is imported from `canon`, as `from canon import propagate`; the rest from its room, as",
         "`from canon.flow import lyapunov_spectrum`; scenes and pictures from `canon.scene` and `canon.plot`. The page",
         "of each name begins with the line that imports it.",
         "",
