@@ -114,7 +114,10 @@ def test_mutants_and_attacks_keep_the_day_of_their_trial(recorder):
         assert RAN.findall(block)[0][1] == f"measured on {in_words(days)}"
 
 
-def test_a_sentence_without_its_numbers_is_refused(recorder):
+def test_a_sentence_without_its_numbers_is_refused(recorder, tmp_path, monkeypatch):
+    import measured_page
+
+    monkeypatch.setattr(measured_page, "FIGURES", tmp_path)
     section = recorder["section_of"]("choose")
     printed = "accuracy kept (x): 3 of 3\npredicted: 2 of 2;\nof the search: 1 of 2;"
     assert "3 of 3" in section.page("C", "c", printed, "choose")
