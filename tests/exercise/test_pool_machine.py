@@ -89,6 +89,8 @@ class PoolMachine(RuleBasedStateMachine):
         if which < len(running):
             with suppress(ProcessLookupError):
                 os.kill(running[which], signal.SIGKILL)
+            while is_running(running[which]):  # a busy machine may take its time to end it
+                time.sleep(0.01)
 
     @rule(verdict=VERDICTS)
     def a_process_is_killed_at_work(self, verdict: str) -> None:
