@@ -214,23 +214,30 @@ class _Reader:
         """
         read = [[self.place.get(each) for each in column] for column in whole.columns]
         other = {i for column in read if None in column for i, place in enumerate(column) if place is None}
-        known: dict[Expr, Any] = {}
-        found: dict[tuple[bool, ...], list[int]] = {}
-        for i in sorted(other):
-            kinds: list[bool] = []
-            for given, column in zip(whole.columns, read, strict=True):
-                kinds.append(column[i] is not None)
-                if column[i] is None:
-                    column[i] = self._number(given[i], known)
-                    if column[i] is None:
-                        return None
-            found.setdefault(tuple(kinds), []).append(i)
+        found = self._with_numbers(whole, read, sorted(other))
+        if found is None:
+            return None
         if len(other) < len(read[0]):
             found[(True,) * len(read)] = [i for i in range(len(read[0])) if i not in other]
         return [
             tuple(_column(is_place, column, rows) for is_place, column in zip(kinds, read, strict=True))
             for kinds, rows in sorted(found.items(), key=lambda group: group[1][0])
         ]
+
+    def _with_numbers(
+        self, whole: RepeatedSum, read: Sequence[list[Any]], other: Sequence[int]
+    ) -> dict[tuple[bool, ...], list[int]] | None:
+        """Put numbers where these rows have no places; return the rows by which of theirs are places."""
+        known: dict[Expr, Any] = {}
+        found: dict[tuple[bool, ...], list[int]] = {}
+        for i in other:
+            found.setdefault(tuple(column[i] is not None for column in read), []).append(i)
+            for given, column in zip(whole.columns, read, strict=True):
+                if column[i] is None:
+                    column[i] = self._number(given[i], known)
+            if any(column[i] is None for column in read):
+                return None
+        return found
 
     def of_single(self, expression: Expr) -> RepeatedTerms:
         """Return what stands beside the sums, as a sum of one row."""
