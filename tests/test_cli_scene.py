@@ -101,6 +101,15 @@ def test_pictures_are_written(capsys, tmp_path):
     assert "animation" in text
 
 
+def test_a_picture_is_written_without_a_film(capsys, tmp_path):
+    picture = tmp_path / "a.png"
+    status, text, _ = out(capsys, "harmonic-oscillator", "--periods", "0.2", "--plot", str(picture))
+    assert status == 0
+    assert f"picture: {picture}\n" in text
+    assert picture.read_bytes()[:4] == b"\x89PNG"
+    assert "animation" not in text
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

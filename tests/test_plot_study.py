@@ -26,6 +26,7 @@ from canon.plot import (
     plot_section,
     plot_study_heatmap,
     plot_work_precision,
+    study_page,
 )
 from canon.plot.study_page import study_report
 from canon.scene import find
@@ -265,6 +266,30 @@ def test_the_report_holds_everything_and_needs_nothing(results):
         assert ElementTree.fromstring(base64.b64decode(image)).tag.endswith("svg")
     assert "http" not in re.sub(r'src="[^"]+"', "", page.replace("http-equiv", ""))
     assert "<script" not in page
+
+
+def test_a_figure_of_the_report_has_as_many_lines_as_are_told_apart(results, monkeypatch):
+    drawn = []
+
+    def noted(some):
+        drawn.append([result.case for result in some])
+        return plot_energy_error(some)
+
+    monkeypatch.setattr(study_page, "LINES", ("-", "--", "-.", ":"))
+    monkeypatch.setattr(study_page, "plot_energy_error", noted)
+    monkeypatch.setattr(study_page, "_figure", lambda axes, about: about)
+    finished = [result for result in results if result.state is State.FINISHED]
+    assert len(list(study_page._figures(finished, "a motion"))) >= 2
+    assert [len(cases) for cases in drawn] == [4, 2]
+    assert [case for cases in drawn for case in cases] == [result.case for result in finished]
+
+
+def test_a_row_says_how_far_a_case_is_or_why_it_failed(results):
+    told = [study_page._cells(result)[0] for result in results if result.state is not State.FINISHED]
+    assert told.count("pending: 50 % done") == 1
+    failed = [words for words in told if words.startswith("failed: ")]
+    assert len(failed) == len(told) - 1 == 2
+    assert all("does not split into drifts and kicks" in words for words in failed)
 
 
 def test_what_a_stranger_called_his_system_is_text_in_the_report(tmp_path):
