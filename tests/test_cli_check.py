@@ -1,5 +1,6 @@
 """``canon check`` from end to end, in a process of its own, on good, wrong and hostile sheets."""
 
+import argparse
 import json
 import math
 import subprocess
@@ -9,6 +10,7 @@ from fractions import Fraction
 import pytest
 
 from canon.cli import main
+from canon.command.argument_types import seconds
 from canon.exercise.judging_process import Worker
 from canon.exercise.sheet.sheet import Claim
 
@@ -252,3 +254,14 @@ def test_a_budget_that_is_spent_kills_the_worker_and_says_so(processor_seconds):
         assert told.status in ("undecided", "holds")
         assert processor_seconds() - used < 1.02
         assert worker.judge(Claim("after", "equality-only", TRUE)).status == "holds"
+
+
+@pytest.mark.parametrize("text", ["-1", "-0.5", "-1e-9", "inf", "nan", "soon"])
+def test_no_time_is_negative_or_without_end(text):
+    assert seconds(none=True)("0") == 0.0
+    with pytest.raises(argparse.ArgumentTypeError, match="should be a number of seconds, 0 or more"):
+        seconds(none=True)(text)
+    with pytest.raises(
+        argparse.ArgumentTypeError, match="should be a number of seconds, above 0 and up to 60"
+    ):
+        seconds(60.0)(text)

@@ -226,6 +226,14 @@ def test_a_killed_child_is_gone_and_says_so():
         os.killpg(child.pid, 0)
 
 
+def test_a_killed_child_is_waited_for_a_moment(monkeypatch):
+    child, waited = Child("canon.no_such_module"), []
+    monkeypatch.setattr(child._listener, "join", waited.append)
+    child.kill()
+    (seconds,) = waited
+    assert 0.0 < seconds < 1.0
+
+
 def test_a_child_that_cannot_start_says_so():
     child = Child("canon.no_such_module")
     with pytest.raises(Ended):
