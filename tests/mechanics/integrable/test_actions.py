@@ -64,6 +64,15 @@ def test_the_pendulum_librates_as_its_elliptic_integrals_say(energy):
     assert misses(found.frequencies[0], sp.pi / (2 * sp.elliptic_k(modulus / 2)))
 
 
+@pytest.mark.parametrize("place", [sp.Rational(-27, 10), sp.Rational(27, 10)])
+def test_the_pendulum_librates_wherever_it_starts_on_its_way(place):
+    energy = sp.Rational(99, 100)
+    found = action_variables(PENDULUM, {q: place, p: sp.sqrt(2 * (energy + sp.cos(place)))})
+    modulus = (1 + energy) / 2
+    assert found.cycles[0].kind is CycleKind.LIBRATION
+    assert holds(found.frequencies[0], sp.pi / (2 * sp.elliptic_k(modulus)))
+
+
 @pytest.mark.parametrize("energy", [sp.Rational(101, 100), sp.Integer(3)])
 def test_the_pendulum_rotates_as_its_elliptic_integrals_say(energy):
     found = action_variables(PENDULUM, {q: 1, p: -sp.sqrt(2 * (energy + sp.cos(1)))})
@@ -250,6 +259,8 @@ def test_bad_input_is_told():
         action_variables(OSCILLATOR, {q: 1, p: 1}, {m: 1})
     with pytest.raises(ValueError, match="real number"):
         frequencies(OSCILLATOR, {q: 1, p: sp.I}, {m: 1, w: 1})
+    with pytest.raises(ValueError, match="m should have a real number for its value, not '1'"):
+        action_variables(OSCILLATOR, {q: 1, p: 1}, {m: "1", w: 1})
     with pytest.raises(ValueError, match="declared positive"):
         action_variables(KEPLER, {r: -1, phi: 0, p_r: 0, p_phi: 1}, {m: 1, k: 1})
     with pytest.raises(NotHolomorphicError, match="Max"):

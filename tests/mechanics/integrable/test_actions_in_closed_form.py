@@ -74,6 +74,20 @@ def test_published_formulas_come_out(name):
         assert found[1].J == L
 
 
+@pytest.mark.parametrize(
+    ("square", "known"),
+    [
+        (a - b * r**2, (a / (2 * sp.sqrt(b)), "oscillator")),
+        (a + b / r - k**2 / r**2, (b / (2 * sp.sqrt(-a)) - k, "Kepler")),
+        (a - b * r**2 - k**2 / r**2, (a / (4 * sp.sqrt(b)) - k / 2, "radial oscillator")),
+        (a - b * r**2 + k / r, None),
+    ],
+)
+def test_powers_are_recognised_by_their_exponents(square, known):
+    terms = module.terms_in(square, r)
+    assert module._powers(terms.pop(sp.S.One), terms, r) == known
+
+
 @pytest.mark.parametrize("n", [4, 6, 10])
 def test_even_powers_have_gamma_functions(n):
     """J = E^(1/2 + 1/n) √(2 m) k^(−1/n) Γ(1/n)/(n √π Γ(3/2 + 1/n)), so E grows as J^(2n/(n + 2))."""

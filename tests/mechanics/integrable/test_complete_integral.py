@@ -221,6 +221,9 @@ def test_bad_input_is_told():
         hamilton_jacobi(H, "elliptic")
     with pytest.raises(ValueError, match="Cartesian"):
         hamilton_jacobi(DOUBLE_PENDULUM, "polar")
+    for uneven in (px**2 / 2 + 2 * py**2 + x**2 + y**2, x**2 * (px**2 + py**2) / 2 + y):
+        with pytest.raises(ValueError, match="Cartesian"):
+            hamilton_jacobi(Hamiltonian(uneven, [x, y], [px, py]), "polar")
     E = sp.Symbol("E", real=True)
     with pytest.raises(ValueError, match="already stands in H"):
         hamilton_jacobi(Hamiltonian(px**2 + E * x, x, px))
