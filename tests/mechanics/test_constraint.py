@@ -7,12 +7,14 @@ from hypothesis import strategies as st
 
 from canon.expression.symbols.symbol import acceleration, coordinates, parameters, time, velocity
 from canon.mechanics.algebra.all_vanish import differ
+from canon.mechanics.algebra.constraint_manifold import transported
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 from canon.mechanics.lagrange.dependence import DependentConstraintsError
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.lagrange.quasi_velocity import Kinematics, independent_velocities, maggi_accelerations
 from canon.mechanics.reduction.contact import multiplier_along, multiplier_in_contact
 from canon.mechanics.reduction.eliminate_constraints import eliminated, embedded, satisfies
+from canon.proof.domain.domain import Domain
 from canon.proof.equivalence import equivalent_equations
 from canon.proof.vanish import vanishes
 
@@ -320,3 +322,13 @@ def test_numbers_differ_from_zero_on_either_side():
     assert differ(sp.Integer(-2))
     assert differ(sp.Rational(1, 3))
     assert not differ(sp.Integer(0))
+
+
+def test_what_is_assumed_of_a_symbol_is_asked_of_its_value():
+    u = sp.Symbol("u", real=True)
+    signs = {"positive": u > 0, "negative": u < 0, "nonzero": sp.Ne(u, 0)}
+    for sign, condition in signs.items():
+        assert transported(Domain(), {sp.Symbol("c", real=True, **{sign: True}): u}).conditions == (
+            condition,
+        )
+    assert transported(Domain(), {sp.Symbol("c", real=True): u}).conditions == ()

@@ -355,6 +355,21 @@ def test_arbitrary_functions_in_generating_functions():
     assert vanishes(generating_function(T, 3).F - (-p * Q + V(Q))).holds
 
 
+def test_a_closed_form_is_proved_in_the_time_that_is_left(monkeypatch):
+    left, generates = [], GeneratingFunction.generates
+
+    def timed(F, T, domain, budget):
+        left.append(budget)
+        return generates(F, T, domain, budget)
+
+    monkeypatch.setattr(GeneratingFunction, "generates", timed)
+    assert isinstance(
+        generating_function(CanonicalTransformation(q, p, p, -q), 1, budget=30.0), GeneratingFunction
+    )
+    assert left
+    assert all(0.0 < seconds <= 30.0 for seconds in left)
+
+
 def test_a_type_that_does_not_exist_is_refused():
     identity = GeneratingFunction(2, q * P, q, p, Q, P)
     with pytest.raises(NoClosedInverseError, match="could not be solved"):
