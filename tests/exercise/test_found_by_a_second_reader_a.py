@@ -190,6 +190,16 @@ def test_keys_of_another_way_of_saying_it_are_refused_by_name(kind, right, besid
     assert "can't stand beside" in sentence or "would be passed over" in sentence
 
 
+@pytest.mark.parametrize(("number", "F"), [(1, "q*Q1"), (2, "q*P1"), (3, "p*Q1"), (4, "p*P1")])
+def test_generating_functions_of_all_four_types_are_judged(number, F):
+    map_ = {"of": "poisson-brackets", "q": ["q"], "p": ["p"], "new_q": ["Q1"], "new_p": ["P1"], "F": F}
+    assert said("invariance", **map_, type=number) == "holds"
+    for other in (0, 5):
+        key, sentence = why_invalid("invariance", **map_, type=other)
+        assert key == "type"
+        assert "should be 1, 2, 3 or 4" in sentence
+
+
 def test_what_goes_together_still_does():
     forced = {**OSCILLATOR, "parameters": {"c": "positive"}, "Qnc": ["-c*x_dot"]}
     assert said("conserved-or-not", **forced, not_conserved=["x_dot**2 + x**2"]) == "holds"

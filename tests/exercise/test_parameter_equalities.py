@@ -3,6 +3,8 @@
 import pytest
 
 from canon.exercise.claim_verdict import InvalidClaim, judge
+from canon.exercise.judges.perturbed.tied_parameters import with_tied_values
+from canon.exercise.sheet.reading import Reading
 from canon.exercise.sheet.sheet import Claim
 
 LINEAR = {
@@ -54,3 +56,14 @@ def test_under_one_equality_and_not_under_another(kind, keys, right, wrong):
 def test_equalities_that_nothing_satisfies_are_refused():
     with pytest.raises(InvalidClaim, match="no point satisfies"):
         told("canonicity", LINEAR, "a = 1", "a = 2")
+
+
+@pytest.mark.parametrize("place", [0, 1, 2])
+def test_an_equality_that_gives_no_value_hides_none_of_the_others(place):
+    ties = ["k = 3", "m = 2"]
+    ties.insert(place, "c**3 + d**3 = 1")
+    names = {"k": "positive", "m": "positive", "c": "real", "d": "real"}
+    keys = {"q": ["q"], "p": ["p"], "H": "p**2/(2*m) + k*q**2/2", "K": "J", "actions": ["J"], "degree": 2}
+    reading = Reading.of(Claim("a", "normal-form", {**keys, "parameters": names, "domain": ties}))
+    energy = with_tied_values(reading, reading.expression("H"))
+    assert str(energy) == "p**2/4 + 3*q**2/2"

@@ -281,3 +281,11 @@ def test_actions_that_the_time_is_too_short_for_are_no_ground_for_a_verdict(monk
     next(found)  # a second of work has not passed, although the clock went on
     with pytest.raises(Undecided, match="were not found in the budget"):
         next(found)
+
+
+def test_the_coordinate_whose_action_has_no_closed_form_is_named():
+    x, y, p_x, p_y, E = symbols("x y p_x p_y E", real=True)
+    H = Hamiltonian((p_x**2 + p_y**2 + x**2 + y**2) / 2 + y**3, [x, y], [p_x, p_y])
+    tori = domain_tori.Tori(hamilton_jacobi(H), (), (E, None), {})
+    with pytest.raises(Undecided, match="the action of y has no closed form"):
+        tori.known()

@@ -153,6 +153,16 @@ def test_a_motion_that_begins_elsewhere_does_not_pass(x, passes):
     assert screening(reading, dict(answers_of(reading))).passes({}) is passes
 
 
+@pytest.mark.parametrize(
+    ("x", "p", "passes"),
+    [("sin(t)", "cos(t)", True), ("sin(t)", "sin(t)", False), ("sin(2*t)", "2*cos(2*t)", False)],
+)
+def test_a_motion_in_phase_space_passes_where_it_obeys_hamiltons_equations(x, p, passes):
+    keys = {"q": ["x"], "p": ["p"], "H": "p**2/2 + x**2/2", "solution": {"x": x, "p": p}}
+    reading = Reading(Claim("a", "hamilton-equations", keys))
+    assert screening(reading, dict(answers_of(reading))).passes({}) is passes
+
+
 def test_the_part_of_the_domain_where_a_branch_is_right_is_told():
     keys = {
         "parameters": {"x": "real"},
