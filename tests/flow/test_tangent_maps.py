@@ -8,6 +8,7 @@ from canon import DOP853, RK4, Gauss, Hamiltonian, Splitting, Taylor, coordinate
 from canon.flow import AverageVectorField
 from canon.flow.geometry.flow_jacobian import flow_jacobian, symplecticity_defect
 from canon.flow.run.non_finite_state import NonFiniteStateError
+from canon.flow.tangent import deviation_growth as module
 from canon.flow.tangent.compiled_deviations import CompiledDeviations
 from canon.flow.tangent.deviation_frame import given_frame, random_frame
 from canon.flow.tangent.deviation_growth import DeviationRun, deviation_growth, deviation_task
@@ -209,6 +210,20 @@ def test_many_orbits_are_the_single_ones_and_lie_side_by_side():
         alone = task_of(HENON_HEILES, starts[:, k], Splitting("blanes-moan-4"), 0.1)
         found = deviation_growth(alone, random_frame(4, 3, 1), orthogonal=True)
         np.testing.assert_allclose(together.log[:, :, k], found.log[:, :, 0], atol=1e-13)
+
+
+def test_orbits_on_several_threads_are_those_on_one(monkeypatch):
+    task = task_of(
+        HENON_HEILES, np.random.default_rng(4).uniform(-0.3, 0.3, (4, 7)), Splitting("verlet"), 0.1
+    )
+    on_one = deviation_growth(task, random_frame(4, 2, 1), orthogonal=True)
+    monkeypatch.setattr(module, "_LEAST", 2)
+    monkeypatch.setattr(module.os, "cpu_count", lambda: 3)
+    on_three = deviation_growth(task, random_frame(4, 2, 1), orthogonal=True)
+    assert on_three.states.shape == (4, 7)
+    np.testing.assert_array_equal(on_three.states, on_one.states)
+    np.testing.assert_array_equal(on_three.log, on_one.log)
+    np.testing.assert_array_equal(on_three.energy_error, on_one.energy_error)
 
 
 def test_parameters_may_differ_from_orbit_to_orbit():

@@ -87,3 +87,12 @@ def test_places_of_their_own(name, x, expected):
         assert not np.isfinite(high)
     else:
         np.testing.assert_array_equal(high, expected)
+
+
+def test_angles_have_sines_as_long_as_they_keep_their_place_in_the_period():
+    inside, outside = (evaluated("sin", np.array([x * 2.0**45]), np.ones(1), 1) for x in (0.9, 1.1))
+    x = 0.9 * 2.0**45
+    with mpmath.workdps(60):
+        true = mpmath.sin(mpmath.mpf(x) + mpmath.mpf(x * LOW))
+        assert abs(sum(mpmath.mpf(part.item()) for part in inside) - true) < 1e-16
+    assert np.isnan(outside[0])

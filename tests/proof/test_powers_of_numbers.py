@@ -1,7 +1,7 @@
 """Powers of −1, i and algebraic numbers with symbolic exponents."""
 
 import pytest
-from sympy import Eq, I, Integer, Mod, Piecewise, Rational, cos, exp, pi, sqrt, symbols
+from sympy import Eq, GoldenRatio, I, Integer, Mod, Piecewise, Rational, cos, exp, pi, sqrt, symbols
 
 from canon.proof import Domain, equal
 
@@ -20,6 +20,8 @@ TRUE = [
     ((-1) ** (n / 3), exp(I * pi * n / 3), Domain(), exp(-I * pi * n / 3)),
     (phi ** (n + 2), phi ** (n + 1) + phi**n, Domain(), phi ** (n + 1) - phi**n),
     (phi ** (-n), (phi - 1) ** n, Domain(), (phi + 1) ** n),
+    (GoldenRatio, phi, Domain(), sqrt(5) / 2),
+    (x * GoldenRatio**2, x * (GoldenRatio + 1), Domain(), x * (GoldenRatio - 1)),
     (((1 - sqrt(5)) / 2) ** n, (-1) ** n * phi ** (-n), Domain(), phi ** (-n)),
     (
         ((1 - sqrt(5)) / 2) ** (n + 2),
