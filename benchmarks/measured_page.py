@@ -708,8 +708,9 @@ SECTIONS = {
     ),
     "mutation": Section(
         "Of {0} small changes of the code, drawn by a seed, {2} change what canon does, and its tests notice {3} % of "
-        "those, {1} of them by tests that were written after the survivors had been read. Each of the others was read; "
-        "why it changes nothing, or which test was written for it, stands in the output.",
+        "those: {4} % by tests that were there when the sample was drawn, which is what to expect of a sample that "
+        "nobody has read, and {1} more by tests that were written after the survivors had been read. Why each of the "
+        "others changes nothing, or which test was written for it, stands in the output.",
         (
             Table(
                 (
@@ -725,7 +726,8 @@ SECTIONS = {
                 r"^(\w[\w ]*?) +(\d+) +(\d+) +(\d+) +(\d+) +(\d+) +(\d+) +([\d.]+|–) %$",
             ),
         ),
-        told=r"^all +\d+ +(\d+) +\d+ +(\d+) .*?^(\d+) change what canon does, ([\d.]+) %",
+        told=r"^all +\d+ +(\d+) +\d+ +(\d+) .*?"
+        r"^(\d+) change what canon does, ([\d.]+) % of them are killed, ([\d.]+) %",
     ),
     "choose": Section(
         "The accuracy was kept in {0} cases, the cost was within a factor of 2 of what was "

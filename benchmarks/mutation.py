@@ -165,7 +165,9 @@ def tell(mutants: list[Mutant], found: dict[str, Trial], said: dict[str, dict[st
         print(row(room, lines, counts[room]))
     total = sum(counts.values(), Counter[str]())
     print(row("all", sum(rooms.values()), total))
-    print(f"\n{total.total() - total['equal']} change what canon does, {share(total)} % of them are killed")
+    change = total.total() - total["equal"]
+    print(f"\n{change} change what canon does, {share(total)} % of them are killed, ", end="")
+    print(f"{100 * total['killed'] / change:.1f} % by tests that were there when the sample was drawn")
     for key, title in FATES.items():
         told = [m for m in mutants if fate(m, found, said) == key]
         print(f"\n{title}: {len(told)}")
