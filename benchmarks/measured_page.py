@@ -63,6 +63,13 @@ def pyplot() -> Any:
     return plt
 
 
+def shown(figure: Any, name: str, caption: str) -> str:
+    """Save a figure into docs/figures, and return the line of Markdown that shows it."""
+    figure.savefig(FIGURES / f"measured_{name}.png", dpi=120, metadata={"Software": None})
+    pyplot().close(figure)
+    return f"![{caption}](figures/measured_{name}.png)\n\n"
+
+
 @dataclass(frozen=True)
 class Plot:
     """A figure from one table: two of its columns, as a line over logarithmic axes or as bars with their names."""
@@ -91,9 +98,7 @@ class Plot:
             axes.set_ylabel(table.columns[self.y])
         axes.set_xlabel(table.columns[self.y if self.bars else self.x])
         axes.spines[["top", "right"]].set_visible(False)
-        figure.savefig(FIGURES / f"measured_{name}.png", dpi=120, metadata={"Software": None})
-        plt.close(figure)
-        return f"![{self.caption}](figures/measured_{name}.png)\n\n"
+        return shown(figure, name, self.caption)
 
 
 @dataclass(frozen=True)
@@ -133,9 +138,7 @@ class Lines:
             axes.spines[["top", "right"]].set_visible(False)
             axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), frameon=False, fontsize="small")
         panels[0, 0].set_ylabel(self.y)
-        figure.savefig(FIGURES / f"measured_{name}.png", dpi=120, metadata={"Software": None})
-        plt.close(figure)
-        return f"![{self.caption}](figures/measured_{name}.png)\n\n"
+        return shown(figure, name, self.caption)
 
 
 def numbers(cell: str) -> list[float]:

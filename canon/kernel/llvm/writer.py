@@ -25,10 +25,11 @@ _ALGEBRA = {"add": "fadd", "sub": "fsub", "mul": "fmul", "div": "fdiv"}
 _PAGE, _APART, _LONG = 4096, 9 * 128, 128
 """Bytes of a page, and by how many of them arrays of 128 numbers and more are set apart within one.
 
-A load waits for older stores to addresses that agree with its own in their last twelve bits and in a few that the
-processor draws from where the page lies. Where loops run through several arrays at once, these begin so far apart that
-such stores are done; a sixteenth of all pairs of pages, which no program can choose, would be slow otherwise. Nine
-times 128 bytes: five arrays are 512 bytes or more from each other, and numbers of every kind keep their alignment.
+A load waits for older stores to addresses that agree with its own in their last twelve bits and in some more that
+depend on where the page lies, which no program can choose. Where loops run through several arrays at once, these begin
+so far apart that such stores are done; otherwise a step takes up to twice as long in one process as in another
+(``benchmarks/kernels.py --large``). Nine times 128 bytes: five arrays are 512 bytes or more from each other, and
+numbers of every kind keep their alignment.
 """
 
 _STACK, _LARGE, _LINE = 256 * 1024, 4096, 64
