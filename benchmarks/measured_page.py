@@ -703,8 +703,17 @@ SECTIONS = {
         "is for Windows and macOS.",
         (
             Table(
-                ("room", "lines", "not run", "branches", "not taken", "branches taken, %", "both, %"),
-                r"^(\w+) +(\d+) +(\d+) +(\d+) +(\d+) +([\d.]+) % +([\d.]+) %$",
+                (
+                    "room",
+                    "lines",
+                    "not run",
+                    "branches",
+                    "not taken",
+                    "argued",
+                    "branches taken, %",
+                    "both, %",
+                ),
+                r"^(\w+) +(\d+) +(\d+) +(\d+) +(\d+) +(\d+) +([\d.]+) % +([\d.]+) %$",
             ),
         ),
         told=r"^all .* ([\d.]+) % +([\d.]+) %$",
