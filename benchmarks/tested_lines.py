@@ -9,8 +9,9 @@ python benchmarks/tested_lines.py --kept             # the table that was kept f
 What was run is counted until ``.coverage_data`` is removed, of a module until it changes, and the table is kept in
 ``results/tested_lines.txt``. Why no test takes a branch is said in ``untaken_branches.toml``, under its module and the
 line that asks. Other arguments go to pytest. It takes ``pip install coverage pytest-random-order``. Processes that are
-killed tell nothing of what they ran. Tests with a bound of processor time may fail where each line takes longer than it does alone.
-Under Python 3.11 a thread may fail to begin: two that begin at once can't both be traced (python/cpython#98257).
+killed tell nothing of what they ran. Tests with a bound of processor time may fail where each line takes longer than
+it does alone. Under Python 3.11 a thread may fail to begin: two that begin at once can't both be traced
+(python/cpython#98257).
 """
 
 from __future__ import annotations
