@@ -11,12 +11,13 @@ STYLE = "font-family: monospace; white-space: pre; overflow-x: auto; line-height
 
 
 def preformatted(text: str, *, lead: str = "", colour: str = "") -> str:
-    """Return HTML that shows a text as it stands, after a coloured word.
+    """Return HTML that shows a text as it stands, after a word in white on a colour: a page may be light or dark.
 
     Examples
     --------
     >>> preformatted(" a < b", lead="HOLDS", colour="#1a7f4b").partition(">")[2]
-    '<b style="color: #1a7f4b">HOLDS</b> a &lt; b</pre>'
+    '<b style="background: #1a7f4b; color: #fff; padding: 0 0.3em">HOLDS</b> a &lt; b</pre>'
     """
-    word = f'<b style="color: {colour}">{escape(lead)}</b>' if lead else ""
+    style = f"background: {colour}; color: #fff; padding: 0 0.3em"
+    word = f'<b style="{style}">{escape(lead)}</b>' if lead else ""
     return f'<pre style="{STYLE}">{word}{escape(text)}</pre>'
