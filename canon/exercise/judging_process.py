@@ -1,7 +1,8 @@
 """Judging process: a child process for claims, killed when a claim's budget is spent.
 
-Parent and worker exchange JSON. The worker answers each claim with its verdict first and with the feedback
-afterwards, so that a feedback that takes too long costs no verdict. A worker has at most 2 GB of memory (where the
+Parent and worker exchange JSON. The worker says first that a claim has come, then its verdict, and the feedback
+afterwards: a feedback that takes too long costs no verdict, nor does the end of a process that no claim had reached. A
+worker has at most 2 GB of memory (where the
 system can limit it) and no way to pass anything but text back. It is killed together with the process in which it
 lets proofs run, so that nothing goes on computing what nobody waits for.
 """
@@ -33,10 +34,10 @@ START = 60.0
 """Seconds that a worker may take to start, on a slow or busy machine."""
 GRACE = 0.35
 """Seconds beyond its budget that a judgement may take to come to its own end before it is killed."""
-AT_ONCE = 0.05
-"""A process that ends within so many seconds of a claim's coming was killed before it: another one is asked."""
 LOOK = 0.1
 """Seconds between looks at how long a process has worked."""
+HEARD = b""
+"""The first that a process says of a claim: it has come."""
 FEEDBACK = 12.0
 """Seconds after the verdict for which its feedback is waited for, an outer limit: most takes some hundredths."""
 
@@ -66,6 +67,8 @@ class Worker:
         self._child = child
         self._ready = False
         self._closed = False
+        self.heard = False
+        """Whether the claim that was asked last has come to its process."""
         self.judged = 0
         """Claims that its process was asked."""
         self.started = int(child is not None)
@@ -92,30 +95,32 @@ class Worker:
         """
         if claim.errors:
             return invalid(claim, "\n".join(error.brief for error in claim.errors))
-        begun = time.monotonic()
-        found = self._asked(claim)
-        if found.known in (BROKE_OFF, NOT_STARTED) and time.monotonic() - begun < AT_ONCE:
-            found = self._asked(claim)  # it was killed before, while it started or waited for a claim
-        return found
+        found = self._asked(claim) or self._asked(claim)
+        return found or _open(claim, BROKE_OFF if self.judged else NOT_STARTED, 0.0)
 
-    def _asked(self, claim: Claim) -> Judgement:
-        """Return what a running process says of a claim."""
+    def _asked(self, claim: Claim) -> Judgement | None:
+        """Return what a running process says of a claim; None where it ended before the claim had come to it."""
+        self.heard = False
         try:
             child = self._running()
-        except (Late, Ended, OSError):
+        except Late:
             self.stop()
             return _open(claim, NOT_STARTED, 0.0)
+        except (Ended, OSError):
+            self.stop()
+            return None
         self.judged += 1
         start = time.monotonic()
         child.send(lambda: _encoded(claim), PATIENCE * (claim.budget + GRACE))  # as long as it is waited for
         return self._answer(child, claim, start)
 
-    def _answer(self, child: Child, claim: Claim, start: float) -> Judgement:
-        """Return the last that is said of a claim before it must have been said."""
+    def _answer(self, child: Child, claim: Claim, start: float) -> Judgement | None:
+        """Return the last that is said of a claim before it must have been said; None where it has not come."""
         allowed = claim.budget + GRACE
         before = child.processor_seconds
         verdict: Judgement | None = None
         try:
+            self.heard = _received(child, start + allowed, before, allowed) == HEARD
             while True:
                 answer = json.loads(_received(child, start + allowed, before, allowed))
                 seconds = verdict.seconds if verdict else time.monotonic() - start
@@ -127,6 +132,9 @@ class Worker:
             why = f"its budget of {claim.budget:g} s was spent"
             verdict = verdict and without_explanation(verdict, claim.budget)
         except Ended:
+            if not self.heard:
+                self.stop()
+                return None
             why = BROKE_OFF
         self.stop()
         return verdict or _open(claim, why, time.monotonic() - start)
@@ -227,6 +235,7 @@ def main() -> None:
     kept = KeptExplanations()
 
     def answers(message: bytes) -> Iterator[bytes]:
+        yield HEARD
         for judgement, last in judgements(_decoded(message), kept):
             yield json.dumps({**judgement.to_dict(), "last": last}).encode()
 

@@ -6,7 +6,7 @@ import queue
 import time
 from typing import TYPE_CHECKING, Any
 
-from canon.exercise.judging_process import AT_ONCE, Worker
+from canon.exercise.judging_process import Worker
 
 if TYPE_CHECKING:
     from canon.exercise.report.judgement import Judgement
@@ -22,7 +22,7 @@ ENDLESS: dict[str, Any] = {
 }
 """It keeps a processor busy for more than twenty seconds."""
 
-_ASKED: queue.SimpleQueue[tuple[Worker, int, int]] = queue.SimpleQueue()
+_ASKED: queue.SimpleQueue[Worker] = queue.SimpleQueue()
 
 
 class WatchedWorker(Worker):
@@ -30,18 +30,17 @@ class WatchedWorker(Worker):
 
     def judge(self, claim: Claim) -> Judgement:
         if claim.id == ENDLESS["id"]:
-            _ASKED.put((self, self.started, self.judged))
+            self.heard = False
+            _ASKED.put(self)
         return super().judge(claim)
 
 
 def at_work() -> Worker:
-    """Return the watched worker that was asked, once its process has had the claim for a while.
+    """Return the watched worker that was asked, once its process has the claim.
 
-    A process that was killed before it was asked is replaced at once, and the next one has the claim.
+    A process that was killed before the claim came is replaced, and the next one has it.
     """
-    worker, *before = _ASKED.get()
-    last = before
-    while (now := [worker.started, worker.judged]) != last or now == before or not worker.judged:
-        last = now
-        time.sleep(2 * AT_ONCE)
+    worker = _ASKED.get()
+    while not worker.heard:
+        time.sleep(0.01)
     return worker

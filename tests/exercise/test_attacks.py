@@ -14,7 +14,7 @@ import pytest
 
 from canon import coordinates, parameters
 from canon.exercise import judging_process
-from canon.exercise.judging_process import GRACE, MEMORY, Worker
+from canon.exercise.judging_process import GRACE, HEARD, MEMORY, Worker
 from canon.exercise.sheet.sheet import Claim, SheetError, claim_from, sheet_from
 from canon.exercise.sheet_check import check, judged
 from canon.expression.mathml import formula
@@ -302,7 +302,7 @@ class Slow:
     usable, pid, processor_seconds = True, 0, None
 
     def __init__(self, *answers):
-        self.answers, self.now = [(0.0, b"ready"), *answers], 100.0
+        self.answers, self.now = [(0.0, b"ready"), (0.0, HEARD), *answers], 100.0
 
     def monotonic(self):
         return self.now

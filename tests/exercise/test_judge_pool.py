@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-import math
 import os
 import signal
 import sys
 import threading
+import time
 from concurrent.futures import CancelledError, ThreadPoolExecutor
 from dataclasses import replace
 
@@ -162,8 +162,6 @@ def test_a_pool_that_is_closed_meanwhile_says_so_to_whoever_waits():
 
 
 def test_a_pool_that_is_closed_while_it_judges_starts_no_process(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It took its killed process for one that was killed before it was asked, and asked another, which judged on."""
-    monkeypatch.setattr(judging_process, "AT_ONCE", math.inf)
     monkeypatch.setattr(judge_pool, "Worker", WatchedWorker)
     pool = JudgePool(workers=1, budget=20.0, warm=False)
     with ThreadPoolExecutor(1) as thread:
@@ -194,6 +192,23 @@ class Gone(Child):
 def test_a_process_that_was_killed_while_it_started_costs_no_claim() -> None:
     with Worker(Gone()) as worker:
         assert worker.judge(claim_from(RIGHT)).status == "holds"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no process is halted there")
+def test_a_process_that_is_killed_before_a_claim_comes_to_it_costs_no_verdict() -> None:
+    """However long that takes: it was said to be undecided where the machine was busy."""
+    with Worker() as worker, ThreadPoolExecutor(1) as thread:
+        assert worker.judge(claim_from(RIGHT)).status == "holds"
+        halted = worker.pid
+        os.kill(halted, signal.SIGSTOP)
+        asked = thread.submit(worker.judge, claim_from(WRONG))
+        while worker.judged < 2:
+            time.sleep(0.01)
+        time.sleep(0.2)
+        assert not worker.heard
+        os.kill(halted, signal.SIGKILL)
+        assert asked.result().status == "fails"
+        assert worker.started == 2
 
 
 def test_a_worker_that_is_closed_while_its_process_starts_kills_it(monkeypatch: pytest.MonkeyPatch) -> None:
