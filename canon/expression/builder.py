@@ -105,10 +105,9 @@ class Builder:
             case syntax.Power(base, exponent):
                 return self.power(node, self.expression(base), self.expression(exponent))
             case syntax.Tuple():
-                self.refuse(node, "a pair (…, …) belongs inside Piecewise or Derivative only")
-            case syntax.Comparison():
-                self.refuse(node, "a comparison where an expression should be")
-        return self.refuse(node, "an expression is missing")
+                return self.refuse(node, "a pair (…, …) belongs inside Piecewise or Derivative only")
+            case _:
+                return self.refuse(node, "a comparison where an expression should be")
 
     def finite(self, node: syntax.Node, value: Expr) -> Expr:
         """Return a value that is finite and of a length that can be meant."""

@@ -101,7 +101,7 @@ def mathml(node: Node) -> Element:
             return row
         case Tuple(items):
             return _bracketed(items)
-        case Call():
+        case _:
             return _call(node)
 
 
@@ -268,10 +268,8 @@ def _call(node: Call) -> Element:
             return _derivative(function, variables)
         case ("Integral", (integrand, *over)) if ranges(over) or without_bounds(over):
             return _integral(integrand, over)
-        case "Piecewise", pieces if pieces and all(
-            isinstance(p, Tuple) and len(p.items) == 2 for p in pieces
-        ):
-            return _piecewise(pieces)
+        case "Piecewise", pieces if pieces and len(pairs := _pairs(pieces)) == len(pieces):
+            return _piecewise(pairs)
         case _:
             pass
     name = _FUNCTIONS.get(node.function)
@@ -312,13 +310,16 @@ def _total_order(orders: Sequence[Node | None]) -> int | None:
     return total
 
 
-def _piecewise(pieces: Sequence[Node]) -> Element:
+def _pairs(pieces: Sequence[Node]) -> list[tuple[Node, Node]]:
+    """Return the values with their conditions, as far as pieces are pairs of these."""
+    return [(p.items[0], p.items[1]) for p in pieces if isinstance(p, Tuple) and len(p.items) == 2]
+
+
+def _piecewise(pairs: Sequence[tuple[Node, Node]]) -> Element:
     table = Element("mtable", {"columnalign": "left"})
-    for piece in pieces:
-        if isinstance(piece, Tuple):
-            value, condition = piece.items
-            row = SubElement(table, "mtr")
-            SubElement(row, "mtd").append(mathml(value))
-            otherwise = condition == Name("True", 0, condition.column)
-            SubElement(row, "mtd").append(_leaf("mtext", "otherwise") if otherwise else mathml(condition))
+    for value, condition in pairs:
+        row = SubElement(table, "mtr")
+        SubElement(row, "mtd").append(mathml(value))
+        otherwise = condition == Name("True", 0, condition.column)
+        SubElement(row, "mtd").append(_leaf("mtext", "otherwise") if otherwise else mathml(condition))
     return _row(_leaf("mo", "{"), table)

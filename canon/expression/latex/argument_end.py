@@ -7,21 +7,10 @@ cos(ωt). What could be either is said to be open, and the reader asks.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from canon.expression.latex.names import Mark
-from canon.expression.latex.pieces import (
-    FactorRun,
-    Group,
-    Head,
-    LatexFraction,
-    Operator,
-    Piece,
-    Powered,
-    is_function,
-    names_in,
-    unbraced,
-)
+from canon.expression.latex.pieces import Group, Piece, Powered, is_function, names_in, unbraced
 from canon.expression.latex.understood_time import is_time
 from canon.expression.symbols.symbol import Coordinate, Momentum, Rate
 from canon.expression.text.open_readings import counts, is_angle, is_angle_of_functions, stem_of
@@ -124,8 +113,9 @@ class ArgumentEnd:
         if alone and is_function(below):
             return True
         base = unbraced(below.base) if isinstance(below, Powered) else unbraced(below)
-        read = isinstance(base, Group | Name)
-        return alone and read and any(not counts(name.text) and name.text != "pi" for name in _names_of(base))
+        if not alone or not isinstance(base, Group | Name):
+            return False
+        return any(not counts(name.text) and name.text != "pi" for name in _names_of(base))
 
     def goes_on(self, taken: list[Node], item: Piece) -> bool:
         r"""Whether a factor surely continues an argument, as the t of ``\omega t`` does."""
@@ -150,22 +140,9 @@ class ArgumentEnd:
         return of_motion or symbol == self.scope.time or name in self.scope.functions
 
 
-def _names_of(piece: Piece) -> Iterator[Name]:
-    """Yield the names in a piece; none of what is no factor yet, as an operator."""
-    match piece:
-        case Group():
-            yield from _names_of(piece.inner)
-        case Powered():
-            yield from _names_of(piece.base)
-        case FactorRun():
-            for item in piece.items:
-                yield from _names_of(item)
-        case LatexFraction():
-            yield from names_in(piece.node)
-        case Head() | Operator() | Mark():
-            return
-        case _:
-            yield from names_in(piece)
+def _names_of(piece: Group | Name) -> Iterator[Name]:
+    """Return the names of a name, or of what stands in printed brackets, which has been read."""
+    return names_in(cast("Node", piece.inner) if isinstance(piece, Group) else piece)
 
 
 def bare_argument(items: tuple[Piece, ...]) -> tuple[Piece, ...]:

@@ -209,8 +209,6 @@ def _without_displays(text: str, bare: str) -> str:
     at = 0
     for match in _ENVIRONMENT.finditer(bare):
         word, name = match.group(1), match.group(2)
-        if match.start() < at:
-            continue
         if word == "begin":
             open_.append((name, match.start()))
         elif not open_ or open_[-1][0] != name:

@@ -153,9 +153,7 @@ def _trimmed(bare: str, start: int, end: int) -> Span:
     blank = _BEGINS.match(bare, start, end)
     start = blank.end() if blank else start
     piece = bare[start:end]
-    while stop := _ENDS.search(piece[-80:]):
-        if not stop.group():
-            break
+    while (stop := _ENDS.search(piece[-80:])) and stop.group():
         piece = piece[: len(piece) - len(stop.group())]
     return Span(start, start + len(piece))
 

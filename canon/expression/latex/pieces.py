@@ -6,18 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from canon.expression.latex.names import Applied, Function, Mark
-from canon.expression.text.syntax import (
-    Call,
-    Comparison,
-    Name,
-    Negative,
-    Node,
-    Number,
-    Power,
-    Product,
-    Sum,
-    Tuple,
-)
+from canon.expression.text.syntax import Call, Name, Negative, Node, Number, Power, Product, parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -160,24 +149,8 @@ def mark_of(piece: Piece) -> str | None:
 
 def names_in(node: Node) -> Iterator[Name]:
     """Yield the names and the called functions of a tree."""
-    waiting: list[Node] = [node]
-    while waiting:
-        found = waiting.pop()
-        match found:
-            case Name():
-                yield found
-            case Call():
-                yield Name(found.function, 0, found.column)
-                waiting += found.arguments
-            case Sum() | Product():
-                waiting += [part for _, part in (found.terms if isinstance(found, Sum) else found.factors)]
-            case Power():
-                waiting += (found.base, found.exponent)
-            case Negative():
-                waiting.append(found.operand)
-            case Tuple():
-                waiting += found.items
-            case Comparison():
-                waiting += found.operands
-            case Number():
-                pass
+    for part in parts(node):
+        if isinstance(part, Name):
+            yield part
+        elif isinstance(part, Call):
+            yield Name(part.function, 0, part.column)

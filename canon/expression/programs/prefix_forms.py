@@ -55,8 +55,6 @@ def with_signs_between(text: str, scope: Scope) -> str:
     begin = named.end() if named else 0
     try:
         form = _form(text[begin:].rstrip(" \t\n.;"))
-        if not isinstance(form, list):
-            return text
         if form[0] == "=" and len(form) == 3 and not named:
             return f"{_written(form[1], scope)} = {_written(form[2], scope)}"
         return text[:begin] + _written(form, scope)
@@ -64,7 +62,7 @@ def with_signs_between(text: str, scope: Scope) -> str:
         return text
 
 
-def _form(text: str) -> _Form:
+def _form(text: str) -> list[_Form]:
     """Return the one form that a text is."""
     open_: list[list[_Form]] = [[]]
     at = 0
@@ -84,9 +82,11 @@ def _form(text: str) -> _Form:
             open_[-1].append(found["atom"])
         if len(open_) > _MOST_NESTED:
             raise _NotLispError
-    if len(open_) != 1 or len(open_[0]) != 1:
-        raise _NotLispError
-    return open_[0][0]
+    match open_:
+        case [[[*form]]]:
+            return form
+        case _:
+            raise _NotLispError
 
 
 def _written(form: _Form, scope: Scope) -> str:

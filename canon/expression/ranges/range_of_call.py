@@ -133,7 +133,7 @@ def with_index(node: Node, index: str, number: int, known: Callable[[str], bool]
             return replace(node, factors=marked(node.factors))
         case Power():
             return replace(node, base=inside(node.base), exponent=inside(node.exponent))
-        case Number():
+        case _:
             return node
 
 

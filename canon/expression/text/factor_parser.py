@@ -125,7 +125,8 @@ class FactorParser(Parser):
             )
         if self.token.kind == "end":
             return self.fault(f"{opening.text!r} is never closed", token=opening)
-        return super().unclosed(opening)
+        reason = f"an operator or {CLOSING[opening.text]!r} is missing before {self.token.text!r}"
+        return self.fault(reason, "write * for a product")
 
 
 def _words(found: list[Token], words: Words) -> Iterator[Token]:

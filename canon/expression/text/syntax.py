@@ -6,6 +6,7 @@ tokens, digits of a number, nesting.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -154,8 +155,11 @@ def equation(node: Node) -> tuple[Node, Node] | None:
             return None
 
 
-class Parser:
-    """Recursive descent; one method for each level of precedence, as in Python's own grammar."""
+class Parser(ABC):
+    """Recursive descent; one method for each level of precedence, as in Python's own grammar.
+
+    Factors and brackets are left to those who know the declared names.
+    """
 
     def __init__(self, text: str, tokens: list[Token]) -> None:
         self.text = text
@@ -208,13 +212,9 @@ class Parser:
             terms.append((sign.text == "-", self.product()))
         return Sum(tuple(terms), column) if len(terms) > 1 else terms[0][1]
 
+    @abstractmethod
     def product(self) -> Node:
-        """Read factors with * and / between them."""
-        column = self.token.column
-        factors = [(False, self.signed())]
-        while sign := self.take("*", "/"):
-            factors.append((sign.text == "/", self.signed()))
-        return Product(tuple(factors), column) if len(factors) > 1 else factors[0][1]
+        """Read factors."""
 
     def signed(self) -> Node:
         """Read a factor with signs before it."""
@@ -225,15 +225,9 @@ class Parser:
         node = self.power()
         return Negative(node, column) if minus else node
 
+    @abstractmethod
     def power(self) -> Node:
         """Read a base, and an exponent if there is one."""
-        base = self.atom()
-        if sign := self.take("**"):
-            self.deeper(sign)
-            node = Power(base, self.signed(), sign.column)
-            self.depth -= 1
-            return node
-        return base
 
     def atom(self) -> Node:
         """Read a number, a name, a call or a bracket."""
@@ -260,47 +254,16 @@ class Parser:
         digits = int(whole + fraction)
         return Number(digits * 10 ** max(power, 0), 10 ** max(-power, 0), token.column)
 
+    @abstractmethod
     def named(self, token: Token) -> Node:
-        """Read the call of a function, or a name."""
-        if token.primes or self.token.text != "(" or self.token.kind != "operator":
-            return Name(token.text, token.primes, token.column)
-        opening = self.token
-        self.at += 1
-        self.deeper(opening)
-        arguments: list[Node] = []
-        while not self.take(")"):
-            if arguments and not self.take(","):
-                raise self.unclosed(opening)
-            arguments.append(self.comparison())
-        self.depth -= 1
-        return Call(token.text, tuple(arguments), token.column)
+        """Read what a name begins."""
 
+    @abstractmethod
     def group(self, opening: Token) -> Node:
         """Read a bracket, or the pair in it."""
-        self.deeper(opening)
-        items = [self.comparison()]
-        comma = False
-        while not self.take(")"):
-            if not self.take(","):
-                raise self.unclosed(opening)
-            comma = True
-            if self.token.text != ")":
-                items.append(self.comparison())
-        self.depth -= 1
-        return Tuple(tuple(items), opening.column) if comma else items[0]
 
     def deeper(self, token: Token) -> None:
         """Count one level of nesting more."""
         self.depth += 1
         if self.depth > MAX_NESTING:
             raise self.fault(f"nested more than {MAX_NESTING} deep", token=token)
-
-    def unclosed(self, opening: Token) -> LanguageError:
-        """Return the error of a bracket that does not end here."""
-        if self.token.kind == "end":
-            return self.fault("'(' is never closed", token=opening)
-        if self.token.text == "for":
-            return self.fault("comprehensions are not part of the language")
-        return self.fault(
-            f"an operator or ')' is missing before {self.token.text!r}", "write * for a product"
-        )
