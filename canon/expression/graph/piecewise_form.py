@@ -8,10 +8,13 @@ between two pieces, where χ = 1/2, the value is the mean of both. A root of wha
 from __future__ import annotations
 
 import functools
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from sympy import Expr
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 __all__ = ["without_pieces"]
 
@@ -84,13 +87,23 @@ def _pieces(whole: Any) -> Any:
             f"{_short(whole)} has no value where none of its conditions holds: say what it is there, "
             "Piecewise(…, (value, True))"
         )
-    value, _ = whole.args[-1]
-    for condition in conditions[:-1]:
-        value = _with_values_elsewhere(value, sp.Not(condition))
-    for value_here, condition in reversed(whole.args[:-1]):
+    *others, value = _values(whole)
+    for value_here, condition in zip(reversed(others), reversed(conditions[:-1]), strict=True):
         here = _number(condition, whole)
-        value = _with_values_elsewhere(value_here, condition) * here + value * (1 - here)
+        value = value_here * here + value * (1 - here)
     return value
+
+
+def _values(whole: Any) -> Iterator[Any]:
+    """Yield the values of the pieces with what is known of each: its conditions, and that none before it holds."""
+    before: list[Any] = []
+    for value, condition in whole.args:
+        yield functools.reduce(_with_values_elsewhere, (*before, *_parts(condition, sp.And)), value)
+        before += map(sp.Not, _parts(condition, sp.Or))
+
+
+def _parts(condition: Any, kind: type[sp.And | sp.Or]) -> tuple[Any, ...]:
+    return condition.args if isinstance(condition, kind) else (condition,)
 
 
 def _with_values_elsewhere(value: Any, condition: Any) -> Any:
