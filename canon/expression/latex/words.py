@@ -290,6 +290,8 @@ class _Reader:
 
     def command(self, command: str) -> None:
         start, column = self.at, self.at + 1
+        if command == "\\\\" and not self.out.in_cases:
+            self.refuse_open_bracket_of_cases()
         if self.out.in_cases and (said := CONDITION.match(self.text, start, self.end)):
             self.condition(said, command)
         elif command in SIGNS:
@@ -349,8 +351,18 @@ class _Reader:
         self.at += len(shown)
         return True
 
+    def refuse_open_bracket_of_cases(self) -> None:
+        """Refuse a bracket that is open where a column or a row of ``cases`` ends, and go on as if it were not."""
+        opened = self.out.open
+        cases = max((k for k, bracket in enumerate(opened) if bracket.kind == "CASES"), default=len(opened))
+        if unclosed := opened[cases + 1 :]:
+            del opened[cases + 1 :]
+            self.refuse(unclosed[0].column, f"{unclosed[0].shown} is never closed")
+
     def sign(self, character: str) -> None:
         column = self.at + 1
+        if character == "&" and not self.out.in_cases:
+            self.refuse_open_bracket_of_cases()
         if self.at in self.inner:
             self.out.emit("ATOM", "(…)", column, Group(self.inner[self.at], braces=False, column=column))
             self.at += 1

@@ -115,6 +115,7 @@ def _argument(text: str, at: int, end: int) -> tuple[int, int, int]:
             depth += (text[i] in "{(") - (text[i] in "})")
             if depth == 0:
                 return at + 1, i, i + 1
+        raise LanguageError(text, at + 1, f"{text[at]} is never closed")
     token = re.compile(r"\\[A-Za-z]+|[-+]?\w").match(text, at, end)
     stop = token.end() if token else at
     if token and token.group()[-1].isdigit() and re.match(r"\d|\\pi(?![A-Za-z])|π", text[stop:end]):
@@ -135,7 +136,9 @@ def _integral(text: str, operator: _Operator, end: int, read: _Read) -> tuple[No
         sign = token.group() if token else text[at]
         nested += depth == 0 and _OPERATOR.fullmatch(sign) is not None and sign.lstrip("\\")[0] in "i∫"
         if nested > MOST_NESTED:
-            raise LanguageError(text, at + 1, f"more than {MOST_NESTED} integrals in one", "split the claim")
+            raise LanguageError(
+                text, at + 1, f"more than {MOST_NESTED} integrals within one", "split the claim"
+            )
         depth += sign.lstrip("\\").endswith(("(", "[", "{")) - sign.lstrip("\\").endswith((")", "]", "}"))
         at = found.end() if found else at + len(sign)
     lacks = "has no differential outside brackets" if operator.limits else LIMITS_ARE_MISSING

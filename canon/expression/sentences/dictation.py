@@ -190,6 +190,9 @@ class _Dictated:
             before = before[:-1]
         if "over" in heard or "quantity" in inside or "plus" in before or len(set(powers)) > 1 or not inside:
             raise _HeardAsTwoError
+        signs = [at for at, word in enumerate(inside) if at and word in ("plus", "minus")]
+        if signs and "times" in inside[signs[-1] :]:  # the quantity a plus b times c
+            raise _HeardAsTwoError
         made, _ = self.sum(inside)
         factor, is_sum = self.sum(before) if before else ("1", False)
         if is_sum or any(word in _FUNCTIONS for word in inside):

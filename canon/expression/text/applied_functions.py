@@ -103,7 +103,8 @@ def _exponent(reader: FactorParser) -> Node | None:
         found = Name(node.text, 0, node.column)
     else:
         reader.at -= 1
-        raise reader.fault("an exponent is missing", "write sin(x)**2")
+        reason = "an exponent before an argument is a whole number or a name"
+        raise reader.fault(reason, "write any other behind it, sin(x)**2")
     return Negative(found, node.column) if minus else found
 
 
@@ -168,9 +169,6 @@ def _bare(reader: FactorParser, name: str, chain: int) -> Node:
     taken: list[Node] = []
     numeric = True
     while reader.starts(reader.token) and (numeric or _still(reader, first, name, taken)):
-        part = reader.token
-        if part.kind == "name" and not numeric and is_function(reader):
-            break
         node = reader.atom()
         taken.append(node)
         numeric = numeric and _is_numeric(reader, node)
