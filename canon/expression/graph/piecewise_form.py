@@ -127,8 +127,6 @@ def _rises_with(base: Any, gap: Any) -> bool:
 
 def _number(condition: Any, whole: Any) -> Any:
     """Return χ of a condition."""
-    if condition in (sp.true, sp.false):
-        return sp.Integer(1 if condition == sp.true else 0)
     if isinstance(condition, sp.StrictGreaterThan | sp.GreaterThan | sp.StrictLessThan | sp.LessThan):
         greater: Any = condition.gts
         return _where(greater - condition.lts)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from canon.expression.ranges.range_of_call import INTEGRAL, LIMITS_ARE_MISSING, PRODUCT, SUM
 from canon.expression.text.syntax import MAX_NESTING, Call, LanguageError, Name, Node, Product, Sum, Tuple
+from canon.expression.text.tokens import GREEK
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -161,7 +162,8 @@ def _integrated(
     if behind := re.compile(r"\s*[\^_]").match(text, differential.end()):
         column = behind.end()
         raise LanguageError(text, column, "a power or index of a differential", r"write \int_{0}^{a} f\,dx")
-    variable = read(text, begin, stop, typed.lstrip("\\").replace("{", "").replace("}", ""))
+    name = "".join(GREEK.get(sign, sign) for sign in typed.lstrip("\\") if sign not in "{}")
+    variable = read(text, begin, stop, name)
     if not isinstance(variable, Name):
         raise LanguageError(text, begin + 1, "an integral is over one variable", r"write \int_{0}^{a} f\,dx")
     source, first, last = _integrand(text, operator, differential, end, typed)

@@ -34,7 +34,8 @@ def derivative(reader: FactorParser, token: Token | None = None) -> Node | None:
     order = _order(reader)
     operand = None if reader.token.text == "/" else _above(reader)
     reader.depth -= 1
-    if reader.token.text != "/" or not _is_sign(reader, reader.at + 1, sign):
+    bracket = reader.tokens[min(reader.at + 1, len(reader.tokens) - 1)].text == "("
+    if reader.token.text != "/" or not _is_sign(reader, reader.at + 1 + bracket, sign):
         if sign == "∂":
             raise reader.fault("a derivative is written ∂f/∂x", token=token)
         reader.at = start
@@ -89,7 +90,9 @@ def _below(reader: FactorParser, sign: str) -> list[tuple[Node, int]]:
         reader.at += 1
         variables.append((Name(name.text, name.primes, name.column), _order(reader)))
     if bracket and not reader.take(")"):
-        raise reader.unclosed(bracket)
+        if reader.token.kind == "end":
+            raise reader.unclosed(bracket)
+        raise reader.fault("below a derivative stand its variables alone", "write d/dt or ∂²f/(∂x∂y)")
     return variables
 
 
