@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import pytest
+import sympy as sp
 
+from canon import coordinates
 from canon.exercise.explained_judgement import judgements
 from canon.exercise.sheet.sheet import claim_from
+from canon.expression.parse import LanguageError
 from canon.expression.prose import without_prose
+from canon.expression.remarks import without_remarks
+from canon.expression.sentences.closing_sentence import start_of_closing, with_constancy
 from canon.expression.text.scope import Scope
 
 SPRING = {
@@ -248,3 +253,63 @@ def test_a_wrong_answer_at_the_end_of_a_chain_is_told() -> None:
         p_dot=["p' = -∂H/∂x = -2 k x³"],
     )
     assert (found.status, found.feedback) == ("fails", "dp/dt should be half what it is")
+
+
+NAMES = Scope({"x": coordinates("x"), "k": sp.Symbol("k", positive=True)})
+
+
+def test_three_headings_are_passed_over() -> None:
+    headed = "Result: Solution: Equation of motion: x'' = -x"
+    assert without_prose(headed, NAMES).strip() == "x'' = -x"
+    assert without_prose(f"Answer: {headed}", NAMES).strip() == "Equation of motion: x'' = -x"
+
+
+def test_a_long_sentence_may_lead_to_a_formula() -> None:
+    sentence = "Hence we then find that the final form of the equation of motion of the system reads x'' = -x"
+    assert without_prose(sentence, NAMES).strip() == "x'' = -x"
+    assert without_prose(sentence.replace("final", "half"), NAMES).strip().startswith("the half form of")
+
+
+@pytest.mark.parametrize(
+    ("said", "closes"),
+    [
+        ("x = 1 since the energy is conserved", True),
+        ("x = 1 since the energy is 2 joules", False),
+        ("x = 1 since dF/dt = 0", True),
+        ("x = 1 since dF/dt = 0 and dG/dt = 0", False),
+        ("x = 1 since the force is conserved", True),
+        ("x = 1 since the force k is conserved", False),
+    ],
+)
+def test_a_reason_with_a_number_or_a_name_restricts(said: str, closes: bool) -> None:
+    assert start_of_closing(said, 0, NAMES) == (5 if closes else len(said))
+
+
+@pytest.mark.parametrize(
+    ("said", "written"),
+    [
+        (r"m\dot x is conserved", r"m\dot x = \mathrm{const}"),
+        (r"$m\dot x$ is conserved", r"$m\dot x = \mathrm{const}$"),
+        (r"m\dot x is not conserved", r"m\dot x is not conserved"),
+    ],
+)
+def test_what_is_conserved_is_constant_with_dollars_and_without(said: str, written: str) -> None:
+    assert with_constancy(said, NAMES) == written
+
+
+@pytest.mark.parametrize(
+    ("typed", "left"),
+    [
+        (r"$x' = 2 \cdot (3)$", r"$x' = 2 \cdot (3)$"),
+        (r"$x' = \log (2)$", r"$x' = \log (2)$"),
+        (r"$x' = 2x \quad (3)$", r"$x' = 2x          $"),
+    ],
+)
+def test_a_number_behind_what_takes_an_argument_is_that(typed: str, left: str) -> None:
+    assert without_remarks(typed, NAMES) == left
+
+
+@pytest.mark.parametrize("letter", [r"\theta", r"\vartheta"])
+def test_a_number_behind_a_letter_is_asked_about(letter: str) -> None:
+    with pytest.raises(LanguageError, match=r"\(3\) may be a factor, or the number of the equation"):
+        without_remarks(rf"$x' = 2{letter} (3)$", NAMES)

@@ -13,8 +13,8 @@ from canon.expression.text import factor_parser
 x, y, theta = coordinates("x y theta")
 a, b, g, l, m, n = PARAMETERS = parameters("a b g l m n")
 P = Momentum("p_x", real=True)
-V = sp.Function("V", real=True)
-SCOPE = Scope({s.name: s for s in (x, y, theta, *PARAMETERS, P)}, {"V": ("x",)})
+V, W = sp.Function("V", real=True), sp.Function("W", real=True)
+SCOPE = Scope({s.name: s for s in (x, y, theta, *PARAMETERS, P)}, {"V": ("x",), "W": ("x", "y")})
 
 
 def read(text: str) -> sp.Expr:
@@ -41,6 +41,11 @@ def read(text: str) -> sp.Expr:
         ("diff(theta(t)**2, t)", 2 * theta * theta.dot, "diff(theta(t)**2, t, t)"),
         ("Derivative(V(x), (x, 2,))", V(x).diff(x, 2), "Derivative(V(x), (x, 1,))"),
         ("D(D(x))(t)", x.ddot, "D(x)(t)"),
+        ("dx/(dt)", x.dot, "d²x/(dt²)"),
+        ("d/(dt)(m x')", m * x.ddot, "d/(dt)(m x)"),
+        ("dV/(dx)", V(x).diff(x), "d²V/(dx²)"),
+        ("∂²W/(∂x∂y)", W(x, y).diff(x, y), "∂²W/(∂x²)"),
+        ("∂²W/(∂x²)", W(x, y).diff(x, 2), "∂²W/(∂x ∂y)"),
         ("(m x')' + (m y')' + (a x')' + (b y')'", (m + a) * x.ddot + (m + b) * y.ddot, "(m x')' + (m y')' + (a x')'"),
     ],
 )  # fmt: skip
@@ -71,6 +76,10 @@ def test_what_is_read_is_what_was_meant(typed: str, meant: sp.Expr, other: str) 
         ("d²x/dt", 1, "the orders above and below differ; write d²x/dt²"),
         ("d^(n)x/dt^n", 9, "write the one that is meant"),
         ("dx/(dt", 4, r"'\(' is never closed"),
+        ("d²x/(dt)²", 1, "the orders above and below differ; write d²x/dt²"),
+        ("∂²W/(∂x∂y", 5, r"'\(' is never closed"),
+        ("∂²W/(∂x + ∂y)", 9, r"below a derivative stand its variables alone; write d/dt or ∂²f/\(∂x∂y\)"),
+        ("dx/(dt m)", 8, "below a derivative stand its variables alone"),
         ("d^9x/dt^9", 1, "a derivative of more than the 8th order"),
         ("D(D(D(x)))(t)", 5, r"D with 1 argument\(s\)"),
         ("∂V/∂pi", 1, "a derivative is taken with respect to a declared symbol"),

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from canon.expression.graph.elementary import SLOPES
 from canon.expression.graph.graph import Graph
 from canon.expression.graph.number_systems import LONGDOUBLE, multiprecision
+from canon.expression.graph.python_source import python_function
 from canon.expression.graph.sympy_conversion import NotModelledError
 
 x, y, z = sp.symbols("x y z", positive=True)
@@ -217,3 +218,50 @@ def test_a_float_is_the_binary_number_it_is():
     half, tenth = graph.from_sympy(sp.Float("0.5")), graph.from_sympy(sp.Float(0.1))
     assert graph.to_sympy(half) == sp.Rational(1, 2)
     assert graph.to_sympy(tenth) == sp.Rational(0.1) != sp.Rational(1, 10)
+
+
+def _agrees(f, *symbols):
+    graph = Graph()
+    node = graph.from_sympy(f)
+    at = {s: DIGITS.number(Fraction(k + 2, 7)) for k, s in enumerate(symbols)}
+    values = {s: sp.Rational(k + 2, 7) for k, s in enumerate(symbols)}
+    for found, true in [(node, f), *((graph.derivative(node, s), f.diff(s)) for s in symbols)]:
+        with mpmath.workdps(40):
+            assert _close(graph.evaluate([found], at, DIGITS)[0], mpmath.mpf(sp.N(true.subs(values), 40)))
+
+
+U, W = sp.symbols("u w", real=True)
+
+
+@pytest.mark.parametrize("f", [sp.cot(U), sp.sec(U), sp.csc(U), sp.acot(U), 2**U, U**W, (1 + U**2) ** W])
+def test_functions_and_powers_have_the_values_and_slopes_of_sympys(f):
+    _agrees(f, *sorted(f.free_symbols, key=str))
+
+
+@pytest.mark.parametrize("f", [sp.atan2(U, 2), sp.atan2(2, U), sp.atan2(U, W), sp.atan2(1 + U, 2 - W)])
+def test_both_slopes_of_an_angle_of_two(f):
+    _agrees(f, *sorted(f.free_symbols, key=str))
+
+
+def test_no_other_constant_has_a_name():
+    with pytest.raises(ValueError, match="no constant is called 'tau'; the graph knows 'pi' and 'E'"):
+        Graph().named("tau")
+
+
+def test_error_functions_of_long_doubles_at_infinity():
+    infinity, erf, erfc = np.longdouble("inf"), LONGDOUBLE.functions["erf"], LONGDOUBLE.functions["erfc"]
+    assert [erf(infinity), erf(-infinity), erfc(infinity), erfc(-infinity)] == [1, -1, 0, 2]
+    assert np.isnan(erf(np.longdouble("nan")))
+    assert erf(infinity).dtype == np.longdouble
+
+
+def test_a_long_function_is_the_same_before_and_after_it_is_compiled():
+    f = sp.pi + sp.Add(*(sp.cos(k * x) * (k + x) ** y for k in range(1, 120)))
+    graph = Graph()
+    node = graph.from_sympy(f)
+    assert len(graph.reachable([node])) > 300
+    of_python = python_function(graph, [node], [x, y])
+    values = [of_python((0.75, 0.5))[0] for _ in range(12)]
+    assert len(set(values)) == 1
+    true = sp.N(f.subs({x: sp.Rational(3, 4), y: sp.Rational(1, 2)}), 30)
+    assert abs(values[0] - true) < 1e-12

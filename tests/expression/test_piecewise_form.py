@@ -39,11 +39,6 @@ def test_the_value_is_that_of_the_piece_which_holds(function: sp.Expr) -> None:
         assert found == pytest.approx(float(function.subs({u: at, v: other})), rel=1e-14, abs=1e-15)
 
 
-def test_pieces_of_which_one_is_never_reached() -> None:
-    assert without_pieces(sp.Piecewise((u, False), (v, True), evaluate=False)) == v
-    assert without_pieces(sp.Piecewise((u, True), (v, True), evaluate=False)) == u
-
-
 @pytest.mark.parametrize("condition", [sp.Symbol("b"), sp.Contains(u, sp.Interval(0, 1), evaluate=False)])
 def test_a_condition_that_is_no_inequality_is_told(condition: sp.Basic) -> None:
     with pytest.raises(ValueError, match=r"is no inequality: write it with <, >, & and \|"):

@@ -1,5 +1,6 @@
 """Definite integrals and finite sums as they are written: what they are read as, against quadrature and SymPy."""
 
+import re
 from contextlib import suppress
 
 import mpmath
@@ -26,6 +27,8 @@ READ = [
     (r"\int_0^1\int_0^s u\,du\,ds", sp.Rational(1, 6)),
     (r"\int_0^a d s", a),
     ("∫_0^a s^2 ds", a**3 / 3),
+    ("∫_0^a α^2 dα", a**3 / 3),
+    ("$\\int_0^a \\sin φ_1\\,dφ_1$", 1 - sp.cos(a)),
     ("Integral(s**2*k, (s, 0, a))", k * a**3 / 3),
     ("integrate(s*u, (s, 0, 1), (u, 0, a))", a**2 / 4),
     ("'integrate(sin(s), s, 0, %pi)", 2),
@@ -123,3 +126,91 @@ def test_what_has_a_value_is_read_still():
         "a", "equality-only", {**keys, "parameters": {"n": "nonzero", "a": "real", "x": "positive"}}
     )
     assert judge(claim).holds
+
+
+@pytest.mark.parametrize(
+    ("text", "meaning", "other"),
+    [
+        ("Sum(-(m_i), (i, 1, 2))", -m_1 - m_2, "Sum(m_i, (i, 1, 2))"),
+        ("Sum(m_i*(x_i + i), (i, 1, 2))", m_1 * (x_1 + 1) + m_2 * (x_2 + 2), "Sum(m_i*x_i + i, (i, 1, 2))"),
+        (
+            "Sum(Piecewise((i, x_i < i), (0, True)), (i, 1, 2))",
+            sp.Piecewise((1, x_1 < 1), (0, True)) + sp.Piecewise((2, x_2 < 2), (0, True)),
+            "Sum(Piecewise((i, x_i < 1), (0, True)), (i, 1, 2))",
+        ),
+        (r"\int_0^1\int_0^1\int_0^1\int_0^1 k\,du\,ds\,da\,dm", k, r"\int_0^1\int_0^1 s\,du\,ds"),
+    ],
+)
+def test_an_index_stands_for_its_number_wherever_it_is(text, meaning, other):
+    assert sp.expand(parse_expression(text, SCOPE) - meaning) == 0
+    assert sp.expand(parse_expression(other, SCOPE) - meaning) != 0
+
+
+@pytest.mark.parametrize(
+    ("text", "column", "said"),
+    [
+        (
+            f"Sum({'+'.join(['m*a'] * 100)}, (i, 1, 100))",
+            1,
+            "this sum is longer than anyone writes; write its value",
+        ),
+        ("Integral(2, (V, 0, 1))", 14, "an integral is over a variable, no function or rate"),
+        ("Integral(2, (theta', 0, 1))", 14, "an integral is over a variable, no function or rate"),
+        (
+            "$" + "+".join([r"\int_0^1 a\,ds"] * 65) + "$",
+            962,
+            "more than 64 integrals and sums; split the claim",
+        ),
+        (
+            r"$\int_0^1\int_0^1\int_0^1\int_0^1\int_0^1 k\,du\,ds\,da\,dm\,dv$",
+            34,
+            "more than 3 integrals within one",
+        ),
+        (r"$\int_0^1 s\,ds'$", 14, "a differential of a rate; write the integral over one variable"),
+        (r"$\int_{0 s\,ds$", 7, "{ is never closed"),
+        (r"$\sum_{i=1 m_i$", 7, "{ is never closed"),
+    ],
+)
+def test_what_is_too_much_or_not_whole_is_told(text, column, said):
+    with pytest.raises(LanguageError, match=re.escape(said)) as caught:
+        parse_expression(text, Scope(SCOPE.names, {"V": ("x_1",)}))
+    assert caught.value.column == column
+
+
+def test_powers_of_functions_are_integrated_up_to_the_twelfth():
+    s, zero = sp.Symbol("s", real=True), sp.S.Zero
+    assert definite_integral(sp.sin(s) ** 12, s, zero, sp.pi) == sp.pi * sp.binomial(12, 6) / 2**12
+    assert definite_integral(sp.sin(s) ** 13, s, zero, sp.pi) is None
+
+
+def test_a_logarithm_is_the_integral_between_positive_ends_only():
+    s, one = sp.Symbol("s", real=True), sp.S.One
+    assert definite_integral(1 / s, s, one, a) == sp.log(a)
+    assert definite_integral(1 / s, s, -one, one) is None
+    assert definite_integral(s ** sp.Rational(-1, 2), s, sp.S.Zero, a) is None
+
+
+def test_an_integral_up_to_a_coordinate_is_kept_where_quadratures_may_stand():
+    text = "Integral(exp(-s**2), (s, 0, theta))"
+    known = parse_expression(text, Scope(SCOPE.names, quadratures=True))
+    assert known.diff(theta) == sp.exp(-(theta**2))
+    assert known.subs(theta, 0).doit() == 0
+    for scope, written in ((SCOPE, text), (Scope(SCOPE.names, quadratures=True), text.replace("theta", "a"))):
+        with pytest.raises(
+            LanguageError, match="the integrand is no sum of powers, sines, cosines and exponentials"
+        ):
+            parse_expression(written, scope)
+
+
+def test_sums_typed_one_after_the_other():
+    scope = Scope({s.name: s for s in (m_1, m_2)})
+    typed = [f"sum_{index} m_{index}" for index in "ijknabcd"]
+    assert parse_expression(" + ".join(typed), scope) == 8 * (m_1 + m_2)
+    assert parse_expression(" + ".join(typed[1:]), scope) == 7 * (m_1 + m_2)
+    with pytest.raises(LanguageError, match="sum_e is not declared"):
+        parse_expression(" + ".join([*typed, "sum_e m_e"]), scope)
+
+
+def test_a_declared_sum_is_a_name():
+    with pytest.raises(LanguageError, match="sum_i is not declared; is sum meant"):
+        parse_expression("sum_i m_i", Scope({s.name: s for s in (m_1, m_2, sp.Symbol("sum"))}))

@@ -8,7 +8,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from canon.expression.parse import LanguageError, Scope, statements_of
-from canon.expression.text.statement import unwrapped
+from canon.expression.text.markup import unmarked
+from canon.expression.text.statement import opened, unwrapped
 
 
 def said(text):
@@ -76,3 +77,30 @@ def test_what_nobody_writes_costs_no_time(text):
 
 def test_no_blank_is_needed_behind_a_comma():
     assert said("x' = p,p' = -x") == said("x' = p, p' = -x") == [["x'", "p"], ["p'", "-x"]]
+
+
+def test_rows_of_a_table_in_mathml_are_statements():
+    row = "<mtr><mtd><mi>{}</mi><mo>=</mo><mn>{}</mn></mtd></mtr>"
+    table = f"<math><mtable>{row.format('x', 1)}{row.format('y', 2)}</mtable></math>"
+    assert said(table) == [["x", "1"], ["y", "2"]]
+    assert said(table.replace("</mtr><mtr>", "")) != [["x", "1"], ["y", "2"]]
+
+
+def test_a_definition_in_brackets_is_taken_out_where_they_close():
+    assert opened("x = a (k = b)") == "x = a ,k = b "
+    assert opened("x = a (k = b) c)") == "x = a (k = b) c)"
+
+
+@pytest.mark.parametrize(
+    ("typed", "bare"), [("**__`2*m`__**", "2*m"), ("**__`*2*m*`__**", "*2*m*"), ("**2*m", "**2*m")]
+)
+def test_three_marks_may_stand_around_a_formula(typed, bare):
+    assert unmarked(typed) == bare
+
+
+def test_a_lone_dash_between_two_letters_is_the_bar_of_a_drawn_fraction():
+    drawn = "    a    \nH = - + b\n    m    "
+    with pytest.raises(LanguageError, match="a drawing of the formula over several lines") as caught:
+        unmarked(drawn)
+    assert caught.value.column == 11
+    assert unmarked(drawn.replace("-", "*")) == drawn.replace("-", "*")

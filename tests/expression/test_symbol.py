@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from canon import coordinates, parameters, time, time_derivative
 from canon.expression.symbols.symbol import Rate, without_dynamicsymbols
+from canon.expression.symbols.user_input import given_symbols
 
 THETA = coordinates("theta")
 EVERY_KIND = (THETA, THETA.dot, THETA.ddot, THETA.momentum, parameters("m"))
@@ -151,3 +152,10 @@ def test_rates_are_written_with_dots_in_every_mode():
     assert sp.pretty(q.dot * theta.ddot, use_unicode=True) == "q\u0307₁⋅θ\u0308"
     assert sp.pretty(theta.dot**2, use_unicode=True).splitlines()[1] == "θ\u0307 "
     assert (sp.latex(Rate("v")), sp.pretty(Rate("v"))) == ("v", "v")
+
+
+@pytest.mark.parametrize("given", [{THETA, THETA.dot}, frozenset({THETA})])
+def test_a_set_of_symbols_has_no_order(given):
+    with pytest.raises(TypeError, match="q: a set has no order; give a list"):
+        given_symbols(given, "q")
+    assert given_symbols([THETA, THETA.dot], "q") == (THETA, THETA.dot)
