@@ -231,12 +231,28 @@ def _rate_named(name: str, coordinates: Mapping[str, Symbol]) -> Symbol | None:
     return (velocity if what == "dot" else acceleration)(coordinates[of])
 
 
+def _with_derivatives_taken(f: Expr) -> Expr:
+    """Return f with the derivatives taken that SymPy leaves as they are written, but for those of plain functions.
+
+    With symbols in place of functions of the time they would be derivatives of constants.
+    """
+    written = {
+        d: d.doit(integrals=False)
+        for d in f.atoms(Derivative)
+        if not (
+            isinstance(d.expr, AppliedUndef) and all(isinstance(argument, Symbol) for argument in d.expr.args)
+        )
+    }
+    return exchanged(f, written) if written else f
+
+
 def plain(f: Any, q: Sequence[Symbol], t: Symbol = time, *, keep_sums: bool = False) -> Expr:
     """Return an expression with canon's symbols for dynamicsymbols of these coordinates, their rates and the time.
 
     A function of one symbol whose name is that of a coordinate is that coordinate. Symbols named as rates
     (``theta_dot``) become the rates, and a symbol without assumptions named as the time, which ``dynamicsymbols._t``
-    is, becomes the time. Sums over rows are written out where they are not to be kept.
+    is, becomes the time. Sums over rows are written out where they are not to be kept, and derivatives such as
+    ``Derivative(theta**2, t)`` are taken before theta is a symbol.
 
     Raises
     ------
@@ -257,6 +273,9 @@ def plain(f: Any, q: Sequence[Symbol], t: Symbol = time, *, keep_sums: bool = Fa
     given_kind(t, Symbol, "the time", "give a domain and the like by their names")
     named = {s.name: s for s in q}
     symbols, functions = symbols_and_functions(expression)
+    if functions:
+        expression = _with_derivatives_taken(expression)
+        symbols, functions = symbols_and_functions(expression)
     applied = {
         g: named[g.func.__name__]
         for g in functions
