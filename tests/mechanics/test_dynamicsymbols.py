@@ -4,7 +4,7 @@ import pytest
 import sympy as sp
 from sympy.physics.mechanics import dynamicsymbols
 
-from canon.expression.symbols.symbol import coordinates, parameters, time
+from canon.expression.symbols.symbol import acceleration, coordinates, parameters, time
 from canon.mechanics.algebra.dynamicsymbols import plain
 from canon.mechanics.at_scale.constrained import constrained
 from canon.mechanics.at_scale.first_order import canonical_derivation
@@ -43,6 +43,7 @@ from canon.mechanics.lagrange.frobenius import integrals
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.mechanics.lagrange.newton_euler import Load, NewtonEuler
 from canon.mechanics.lagrange.quasi_velocity import Kinematics, independent_velocities, maggi_equations
+from canon.mechanics.reduction.constrained_motion import constrained_motions
 from canon.mechanics.reduction.contact import multiplier_along, multiplier_in_contact
 from canon.mechanics.reduction.eliminate_constraints import eliminated, embedded
 from canon.mechanics.reduction.ignorable import adapted, is_ignorable
@@ -247,3 +248,58 @@ def test_another_function_of_time_is_not_a_coordinate():
         plain(sp.Symbol("t", positive=True) * TAU, [coordinates("x")])
     with pytest.raises(TypeError, match="no coordinate"):
         Lagrangian(x.diff(TAU) ** 2, [x**2])
+
+
+def test_derivatives_as_they_are_written_are_taken():
+    """d(l sin θ + x)/dt as SymPy leaves it holds two rates; with symbols it would be that of constants, zero."""
+    theta, x = dynamicsymbols("theta x")
+    q = coordinates("theta x")
+    X, Y = x + l * sp.sin(theta), -l * sp.cos(theta)
+    written = m * (sp.Derivative(X, TAU) ** 2 + sp.Derivative(Y, TAU) ** 2) / 2
+    assert written.has(sp.Derivative(X, TAU))
+    L = Lagrangian(written - m * g * Y, [theta, x])
+    on_cart = [Particle(m, (q[1] + l * sp.sin(q[0]), -l * sp.cos(q[0])))]
+    assert sp.simplify(L.L - lagrangian_of_bodies(on_cart, q, m * g * on_cart[0].r[1]).L) == 0
+    assert sp.simplify(L.mass_matrix.det()) == m**2 * l**2 * sp.sin(q[0]) ** 2
+
+
+@pytest.mark.parametrize(
+    ("written", "taken"),
+    [
+        (lambda q, V: sp.Derivative(q**2, TAU), lambda s, V: 2 * s * s.dot),
+        (lambda q, V: sp.Derivative(V(q), TAU), lambda s, V: V(s).diff(s) * s.dot),
+        (
+            lambda q, V: sp.Derivative(q * sp.Derivative(q, TAU), TAU),
+            lambda s, V: s.dot**2 + s * acceleration(s),
+        ),
+        (lambda q, V: V(q).diff(q), lambda s, V: V(s).diff(s)),
+        (lambda q, V: sp.Derivative(sp.Integral(V(k), (k, 0, q)), q), lambda s, V: V(s)),
+    ],
+    ids=["square", "potential", "nested", "force", "integral"],
+)
+def test_a_derivative_as_it_is_written_is_that_of_symbols(written, taken):
+    V, s = sp.Function("V"), coordinates("theta")
+    assert sp.expand(plain(written(dynamicsymbols("theta"), V), [s])) == taken(s, V)
+
+
+def test_a_constraint_by_a_derivative_as_it_is_written_has_the_same_multiplier():
+    x, y = coordinates("x y")
+    V = sp.Function("V")
+    L = Lagrangian(m * (x.dot**2 + y.dot**2) / 2 - k * y**2 / 2, [x, y])
+    curves = [sp.Derivative(x * V(x), x), V(x) + x * V(x).diff(x)]
+    bound = (ConstrainedLagrangian(L, holonomic=[y - curve]) for curve in curves)
+    written, taken = (constrained_motions(each, [])[0].multipliers for each in bound)
+    assert written == taken
+
+
+def test_a_bound_symbol_may_have_the_name_of_a_coordinate_or_of_the_time():
+    """What an integral runs over is no coordinate; beside it the same symbol would be taken for one."""
+    x, other, later = coordinates("x"), sp.Symbol("x"), sp.Symbol("t", positive=True)
+    for bound, refused in (
+        (other, "another symbol than the variable x"),
+        (later, "another symbol than the time t"),
+    ):
+        area = sp.Integral(bound**2, (bound, 0, x))
+        assert plain(area, [x]).doit() == x**3 / 3
+        with pytest.raises(ValueError, match=refused):
+            plain(area + bound, [x])
