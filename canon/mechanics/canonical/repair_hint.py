@@ -159,11 +159,10 @@ def _vanishes(f: Expr, domain: Domain, seconds: float) -> bool:
 
 
 def _short(candidate: Expr) -> Expr:
-    """Return a candidate in lowest terms; whoever uses it checks it afterwards."""
-    if candidate.is_rational_function():
-        return sp.cancel(candidate) if terms_if_expanded(candidate) <= MOST_TERMS else candidate
+    """Return a candidate in lowest terms, a number as a short fraction; whoever uses it checks it afterwards."""
     if candidate.is_number and not candidate.is_Rational:
         guess = sp.nsimplify(candidate.evalf(30), rational=True, tolerance=sp.Float("1e-20"))
-        if guess.is_Rational and guess.q < 10**6:
-            return guess
+        return guess if guess.is_Rational and guess.q < 10**6 else candidate
+    if candidate.is_rational_function():
+        return sp.cancel(candidate) if terms_if_expanded(candidate) <= MOST_TERMS else candidate
     return candidate
