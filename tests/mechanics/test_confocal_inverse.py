@@ -7,6 +7,8 @@ import sympy as sp
 from sympy import cos, cosh, pi, sin, sinh, sqrt
 
 from canon.mechanics import NoClosedInverseError, inverse_transformation
+from canon.mechanics.algebra.branch_point import BranchPoint
+from canon.mechanics.canonical.inverse.confocal_inverse import confocal_branch
 from canon.mechanics.canonical.transformation import point_transformation
 from canon.proof.domain.domain import Domain
 from canon.proof.vanish import vanishes
@@ -68,3 +70,28 @@ def test_where_two_points_have_one_image_there_is_no_inverse():
         inverse_transformation(replace(T, domain=Domain(WHOLE)), [x, y], [p_x, p_y], budget=5)
     back = inverse_transformation(replace(T, domain=Domain((*WHOLE, w < 0))), [x, y], [p_x, p_y])
     assert back.new_q[0].subs({x: 2, y: 1}).n() < 0
+
+
+def test_where_a_witness_does_not_tell_the_branch_none_is_given():
+    """Between the foci u = 0, where v and −v are one place; beyond the axis ρ < 0, and φ is not the angle of (x, y)."""
+    w = sp.Symbol("w", real=True)
+    flat = {x: cosh(w) * cos(v), y: sinh(w) * sin(v)}
+    rho = sinh(w) * sin(v)
+    turned = {x: rho * cos(phi), y: rho * sin(phi), z: cosh(w) * cos(v)}
+    beside = {w: sp.Integer(1), v: sp.Integer(1), phi: sp.Integer(1)}
+    for q, places, nowhere in (
+        ([w, v], flat, beside | {w: sp.S.Zero}),
+        ([w, v, phi], turned, beside | {v: sp.Integer(-1)}),
+    ):
+        branch = confocal_branch(q, places, BranchPoint(beside, places))
+        assert branch.values[w].subs({z: f.subs(beside) for z, f in places.items()}).n() == pytest.approx(1.0)
+        assert confocal_branch(q, places, BranchPoint(nowhere, places)) is None
+
+
+def test_four_coordinates_are_no_confocal_ones():
+    s, Z = sp.symbols("s Z", real=True)
+    places = {x: RADIUS * cos(phi), y: RADIUS * sin(phi), z: AXIS, Z: s}
+    at = BranchPoint(dict.fromkeys((u, v, phi, s, c), sp.S.One), places)
+    assert confocal_branch([u, v, phi, s], places, at) is None
+    del places[Z]
+    assert confocal_branch([u, v, phi], places, at) is not None

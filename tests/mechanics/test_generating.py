@@ -392,3 +392,34 @@ def test_a_type_that_does_not_exist_is_refused():
 def test_refusals_say_what_is_wrong(make, words):
     with pytest.raises(ValueError, match=words):
         make()
+
+
+def test_without_time_for_the_proof_the_generating_function_stays_parametric():
+    T = CanonicalTransformation(q, p, q + p, p)
+    proved = generating_function(T, 1)
+    assert proved.generates(T).holds
+    assert vanishes(proved.F + (q - Q) ** 2 / 2).holds
+    unproved = generating_function(T, 1, budget=0.0)
+    assert isinstance(unproved, ParametricGeneratingFunction)
+    assert vanishes(unproved.F - proved.F.subs(Q, q + p)).holds
+
+
+def test_rules_are_left_open_without_time():
+    exchange = CanonicalTransformation(q, p, p, -q)
+    disguised = GeneratingFunction(1, q * Q * (sin(q) ** 2 + cos(q) ** 2), q, p, Q, P)
+    assert disguised.generates(exchange).holds
+    assert GeneratingFunction(1, 2 * disguised.F, q, p, Q, P).generates(exchange).fails
+    assert disguised.generates(exchange, budget=0.0).undecided
+
+
+def test_a_function_without_a_value_generates_nothing():
+    """Its rules read Q = q, P = p: the logarithm of a hidden zero has the derivative zero."""
+    hidden = GeneratingFunction(2, q * P + sp.log(sin(q) ** 2 + cos(q) ** 2 - 1), q, p, Q, P)
+    assert [rule.value for rule in hidden.rules] == [P, q]
+    assert "F has a value nowhere" in hidden.generates(CanonicalTransformation(q, p, q, p)).feedback
+    for refused in (generated_transformation, generated_inverse, lambda F: of_kind(F, 3)):
+        with pytest.raises(NoClosedInverseError, match="could not be solved for"):
+            refused(hidden)
+    plain = GeneratingFunction(2, q * P, q, p, Q, P)
+    assert generated_transformation(plain).images == (q, p)
+    assert vanishes(of_kind(plain, 3).F + p * Q).holds

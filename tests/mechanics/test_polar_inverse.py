@@ -169,3 +169,52 @@ def test_only_factors_that_keep_the_direction_leave_an_arc():
     assert plain_sign(sqrt(P) * cos(Q) > 0) == (cos(Q) > 0)
     assert plain_sign(P * cos(Q) > 0) == (P * cos(Q) > 0)
     assert united_squares(3 * sin(Q) ** 2 + 2 * cos(Q) ** 2) == cos(Q) ** 2 * -1 + 3
+
+
+@pytest.mark.parametrize(
+    ("arc", "plain"),
+    [
+        (atan2(m**w * sin(phi), m**w * cos(phi)), atan2(sin(phi), cos(phi))),
+        (atan2(q**w * sin(phi), q**w * cos(phi)), atan2(q**w * sin(phi), q**w * cos(phi))),
+        (atan2(0, 2 * q), atan2(0, 2 * q)),
+        (atan2(2 * q, 0), atan2(2 * q, 0)),
+    ],
+    ids=["a positive power", "a power of any sign", "along the axis", "across the axis"],
+)
+def test_factors_leave_an_arc_only_where_they_are_positive(arc, plain):
+    assert plain_arcs(arc) == plain
+
+
+def test_a_map_of_positive_coordinates_has_no_opposite_points():
+    """r⁵ + r grows for r > 0 and has an inverse, though no closed one."""
+    r = sp.Symbol("r", positive=True)
+    with pytest.raises(NoClosedInverseError, match="in closed form on its whole domain; narrow the domain"):
+        inverse_transformation(CanonicalTransformation(r, p, r**5 + r, p / (5 * r**4 + 1)), [Q], [P])
+    with pytest.raises(NoClosedInverseError, match="opposite point have the same image"):
+        inverse_transformation(CanonicalTransformation(q, p, q**2, p / (2 * q)), [Q], [P])
+
+
+def test_k_is_not_found_where_the_map_is_not_solved_or_its_rates_are_not_integrated():
+    F = sp.Function("F")
+    quintic = CanonicalTransformation(q, p, q**5 + q, p / (5 * q**4 + 1))
+    with pytest.raises(
+        NoClosedInverseError, match="K was found in the old variables only, see new_hamiltonian"
+    ):
+        transformed_hamiltonian(quintic, p**2 / 2, [Q], [P])
+    assert new_hamiltonian(quintic, p**2 / 2) == p**2 / 2
+    singular = CanonicalTransformation(q, p, q, p + t * F(q) / q)
+    with pytest.raises(
+        NoClosedInverseError, match="the rates ∂Q/∂t, ∂P/∂t of the map could not be integrated"
+    ):
+        transformed_hamiltonian(singular, p**2 / 2, [Q], [P])
+
+
+def test_k_of_a_map_that_is_solved_step_by_step():
+    """Q = q + t f′(p), P = p: K = H(Q − t f′(P), P) + f(P)."""
+    slope = p**5 + p + sin(p)
+    T = CanonicalTransformation(q, p, q + t * slope, p)
+    K = transformed_hamiltonian(T, q + p**2 / 2, [Q], [P]).H
+    due = Q - t * slope.subs(p, P) + P**2 / 2 + P**6 / 6 + P**2 / 2 - cos(P)
+    assert vanishes((K - due).diff(Q)).holds
+    assert vanishes((K - due).diff(P)).holds
+    assert is_new_hamiltonian(T, q + p**2 / 2, due + P, [Q, P]).fails

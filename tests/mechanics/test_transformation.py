@@ -4,6 +4,7 @@ import pytest
 import sympy as sp
 from map_collection import MAPS, MOVING, NOTES, E, linear_symplectic, m, p, px, py, q, qp, t, w, x, y
 
+from canon.mechanics.algebra.constraint_manifold import on_manifold
 from canon.mechanics.algebra.linear import SingularMatrixError
 from canon.mechanics.canonical.canonicity_tests import disagreement
 from canon.mechanics.canonical.find_generating_function import generating_function
@@ -14,6 +15,7 @@ from canon.mechanics.canonical.inverse.inverse_transformation import (
     NoClosedInverseError,
     inverse_transformation,
 )
+from canon.mechanics.canonical.map_branches import near_the_identity
 from canon.mechanics.canonical.new_hamiltonian import is_new_hamiltonian, new_hamiltonian
 from canon.mechanics.canonical.repair_hint import constant_value, repair_hint
 from canon.mechanics.canonical.transformation import CanonicalTransformation, point_transformation
@@ -29,6 +31,7 @@ from canon.proof.domain.verdict import Status, Verdict
 from canon.proof.vanish import vanishes
 
 Q, P = sp.symbols("Q P", real=True)
+EXCHANGE = CanonicalTransformation(q, p, p, -q)
 TESTS = ["poisson", "lagrange", "symplectic", "bilinear", "contact"]
 
 
@@ -107,6 +110,102 @@ def test_what_mends_a_map_is_a_value():
     found = repair_hint(CanonicalTransformation((x, y), (px, py), (x, y), (px, 2 * py)), sp.S.One)
     assert (found.valence, found.brackets) == (None, (1, 2))
     assert repair_hint(CanonicalTransformation(q, p, q**2, p), sp.S.One) is None
+
+
+def test_what_mends_a_map_is_not_found_without_time():
+    T = CanonicalTransformation((x, y), (px, py), (2 * x, y), (px, 3 * py))
+    assert repair_hint(T, sp.S.One).brackets == (2, 3)
+    assert repair_hint(T, sp.S.One, seconds=0.0) is None
+
+
+def test_a_constant_bracket_is_said_as_a_short_number():
+    """Where q = 0 is singular the constant comes from q = 1, as 2 sin² 1 + 2 cos² 1."""
+    one = sp.sin(1 / q) ** 2 + sp.cos(1 / q) ** 2
+    T = CanonicalTransformation(q, p, -sp.log(q), 2 * p * q * one)
+    assert T.is_canonical().feedback.startswith(
+        "{Q, P} = -2, not 1: canonical with valence -2; multiply P by -1/2"
+    )
+    assert CanonicalTransformation(q, p, T.new_q, [-T.new_p[0] / 2]).is_canonical().holds
+    assert constant_value(3 * one, [q], Domain()) == 3
+    assert constant_value(sp.sqrt(2) + one - one, [q], Domain()) == sp.sqrt(2)
+    assert constant_value(3 * one - 6 * sp.cos(1 / q) ** 2, [q], Domain()) is None
+
+
+def test_a_valence_that_time_does_not_allow_to_decide_is_left_open():
+    T = CanonicalTransformation(q, p, q, p * (2 + sp.sin(q)))
+    without_time = T.is_canonical(valence=None, budget=0.0)
+    assert without_time.status is Status.UNDECIDED
+    assert without_time.residual == T.poisson_brackets[0, 1]
+    assert T.is_canonical(valence=None).feedback.endswith(
+        "is not constant, so no valence makes the map canonical"
+    )
+
+
+def test_a_map_that_follows_is_meant_at_the_same_time():
+    """Q + t, then Q exp s with its time called s: (q + t) exp t."""
+    tau = sp.Symbol("s", real=True)
+    drift = CanonicalTransformation(q, p, q + t, p, t=t)
+    stretch = CanonicalTransformation(Q, P, Q * sp.exp(tau), P * sp.exp(-tau), t=tau)
+    both = drift.then(stretch)
+    assert both.images == ((q + t) * sp.exp(t), p * sp.exp(-t))
+    assert both.t == t
+    assert both.is_canonical().holds
+    assert drift.then(CanonicalTransformation(Q, P, Q * tau, P, t=tau)).is_canonical().fails
+
+
+@pytest.mark.parametrize(
+    ("refused", "message"),
+    [
+        (lambda: bilinear_covariant([p], [q, p]), "1 coefficient for 2 variables; a form has one for each"),
+        (
+            lambda: is_new_hamiltonian(EXCHANGE, p**2, Q**2, [Q]),
+            r"1 symbol for the 2 new variables; give \(\*Q, \*P\)",
+        ),
+        (
+            lambda: ImplicitTransformation((q,), (p,), (Q,), (Q,), (Q - q, P - p)),
+            "old and new variables need different symbols, as many of each",
+        ),
+        (
+            lambda: Hamiltonian(p**2 / 2, q, p).has_equations([p], []),
+            "1 rate given for 2 canonical variables; give one each",
+        ),
+    ],
+)
+def test_as_many_are_asked_for_as_there_are_variables(refused, message):
+    with pytest.raises(ValueError, match=message):
+        refused()
+
+
+def test_a_hamiltonian_without_a_value_is_no_new_hamiltonian():
+    """Of the logarithm of a hidden zero all derivatives are zero."""
+    hidden = sp.log(sp.sin(Q) ** 2 + sp.cos(Q) ** 2 - 1)
+    assert is_new_hamiltonian(EXCHANGE, p**2 + w * q, Q**2 - w * P, [Q, P]).holds
+    refused = is_new_hamiltonian(EXCHANGE, p**2 + w * q, Q**2 - w * P + hidden, [Q, P])
+    assert refused.fails
+    assert refused.feedback.startswith("K has a value nowhere")
+
+
+def test_an_implicit_map_that_can_not_be_solved_is_left_open():
+    """sinh Q = sinh q is the identity, but says so of no set of variables in which it is linear."""
+    alike = ImplicitTransformation((q,), (p,), (Q,), (P,), (sp.sinh(Q) - sp.sinh(q), sp.sinh(P) - sp.sinh(p)))
+    verdict = alike.is_canonical()
+    assert verdict.status is Status.UNDECIDED
+    assert verdict.feedback == "the equations could not be solved for a set of variables that would decide it"
+    half = ImplicitTransformation((q,), (p,), (Q,), (P,), (Q - q, sp.sinh(P) - sp.sinh(p)))
+    assert half.is_canonical().status is Status.UNDECIDED
+    assert ImplicitTransformation((q,), (p,), (Q,), (P,), (Q - q, P - p)).is_canonical().holds
+
+
+def test_the_identity_is_looked_for_at_steps_that_are_zero_and_at_no_variable():
+    """Q = q + h P, P² = p²: of P = ±p one is near the identity, whatever range the variables have."""
+    h = sp.Symbol("h", real=True)
+    equations = [Q - q - h * P, P**2 - p**2]
+    for box in ({h: (0, 1)}, {q: (0, 1), h: (0, 1)}, {q: (0, 1), p: (1, 2), Q: (0, 1), h: (0, 1)}):
+        domain = Domain((), box)
+        branches = on_manifold(equations, domain, prefer=(Q, P, q, p))
+        (near,) = near_the_identity(equations, branches, (q, p), (Q, P), domain)
+        assert vanishes((P - p).subs(near.values)).holds
+    assert near_the_identity(equations, branches, (q, p), (Q, P), Domain((), {q: (0, 1)})) is None
 
 
 def test_composition_and_inversion():
