@@ -286,7 +286,5 @@ def _linear(equations: Sequence[tuple[Expr, Expr]], unknowns: Sequence[Symbol]) 
 
 
 def _sorted_sides(difference: Expr, unknowns: Sequence[Symbol]) -> tuple[Expr, Expr]:
-    if not unknowns:
-        return difference, sp.S.Zero
     free, bound = difference.as_independent(*unknowns, as_Add=True)
     return bound, -free
