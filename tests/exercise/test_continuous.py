@@ -1,10 +1,12 @@
 """Answers that jump, say a number, or are not real: each beside a right answer of the same form."""
 
 import pytest
+import sympy as sp
 
 from canon.exercise import check
 from canon.exercise.claim_verdict import judge
 from canon.exercise.sheet.sheet import Claim, Sheet
+from canon.mechanics.algebra.possible_motion import _knows_no_turns
 
 OSCILLATOR = {"q": "q", "p": "p", "H": "p**2/2 + q**2/2"}
 ENERGY = "p**2/2 + q**2/2"
@@ -186,6 +188,14 @@ def test_whole_turns_of_an_angle_do_not_count():
     assert verdict.assumed == ("phi is an angle of which whole turns do not count",)
     half = motion | {"phi": "atan(A*sin(t)/(B*cos(t)))"}
     assert said("hamilton-equations", **keys, solution=half).fails
+
+
+def test_a_law_knows_of_turns_unless_it_is_the_same_after_one():
+    theta, x, p = sp.symbols("theta x p", real=True)
+    assert all(_knows_no_turns(law, theta) for law in (p * (5 + 4 * sp.cos(theta)), x * p, sp.tan(theta)))
+    assert not any(
+        _knows_no_turns(law, theta) for law in (theta * p, sp.cos(theta / 2), theta - sp.sin(theta))
+    )
 
 
 def test_half_turns_of_an_angle_count():

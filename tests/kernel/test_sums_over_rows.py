@@ -488,3 +488,10 @@ def test_what_takes_sums_apart_sees_them_written_out():
     assert shown.endswith(r"\right)\right)^{2}")
     assert str(chain_sum(lambda a, b: a * b, q)) == "Sum(a_i*b_i, i = 1…3, (a, b)_1 = (q0, q1))"
     assert str(pair_sum(lambda a, b: a * b, q)) == "Sum(a_i*a_j, i < j = 1…4, (a)_1 = (q0))"
+
+
+def test_a_periodic_lattice_is_closed_along_axes_of_three_and_more():
+    q = sp.symbols("q0:6")
+    rows, bonds = [q[:3], q[3:]], (lambda a, b: a * b)
+    left_open, closed = (written_out(lattice_sum(bonds, rows, periodic=some)) for some in (False, True))
+    assert closed - left_open == q[0] * q[2] + q[3] * q[5]

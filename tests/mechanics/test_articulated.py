@@ -136,6 +136,17 @@ def test_a_coordinate_without_mass_has_no_pivot():
         tree.solved([graph.one, graph.one], {})
 
 
+def test_a_spring_takes_the_place_of_a_mass_that_is_missing():
+    """M = [[m + k, m], [m, m]] along a chain whose first body has no mass, and a body that stands still beside it."""
+    graph, (m, k, force) = Graph(), sp.symbols("m k F", positive=True)
+    mass, stiffness, push, one = *map(graph.symbol, (m, k, force)), graph.one
+    chain = [Channel(graph.zero, ((0, one),)), Channel(mass, ((0, one), (1, one))), Channel(mass, ())]
+    tree = tree_of_sums(graph, chain)
+    assert tree.terms == 2
+    found = tree.solved([push, graph.zero], {(0, 0): stiffness, (1, 0): graph.zero})
+    assert [sp.simplify(graph.to_sympy(a)) for a in found] == [force / k, -force / k]
+
+
 @pytest.mark.parametrize(
     ("term", "squares"),
     [

@@ -154,3 +154,13 @@ def test_refusals(holonomic, nonholonomic, words):
     free = constrained(derivation([Particle(m, (x, y))], (x, y)), [x - y])
     with pytest.raises(KeyError, match="no number for m"):
         constrained_motion(free, {})
+
+
+def test_a_curve_that_begins_beyond_the_points_looked_at():
+    """On y = √(x − 5): ẍ = −y′ (g + y″ ẋ²)/(1 + y′²), and the curve pushes with −m ẍ/y′ along its normal (−y′, 1)."""
+    curve = constrained(derivation([Particle(m, (x, y))], (x, y), field=(0, -g)), [y - sp.sqrt(x - 5)])
+    a, push = constrained_motion(curve, {m: 2, g: 10}).accelerations([9.0, 2.0], [4.0, 1.0], 0.0)
+    slope, bend = 1 / 4, -1 / 32
+    along = -slope * (10 + bend * 16) / (1 + slope**2)
+    assert a == pytest.approx([along, slope * along + bend * 16])
+    assert push == pytest.approx([-2 * along / slope])

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from canon.expression.symbols.symbol import acceleration, coordinates, parameters, time, velocity
 from canon.mechanics.algebra.all_vanish import differ
-from canon.mechanics.algebra.constraint_manifold import transported
+from canon.mechanics.algebra.constraint_manifold import on_manifold, transported
 from canon.mechanics.lagrange.constraint import ConstrainedLagrangian
 from canon.mechanics.lagrange.dependence import DependentConstraintsError
 from canon.mechanics.lagrange.lagrangian import Lagrangian
@@ -15,6 +15,7 @@ from canon.mechanics.lagrange.quasi_velocity import Kinematics, independent_velo
 from canon.mechanics.reduction.contact import multiplier_along, multiplier_in_contact
 from canon.mechanics.reduction.eliminate_constraints import eliminated, embedded, satisfies
 from canon.proof.domain.domain import Domain
+from canon.proof.domain.verdict import Undecided
 from canon.proof.equivalence import equivalent_equations
 from canon.proof.vanish import vanishes
 
@@ -332,3 +333,10 @@ def test_what_is_assumed_of_a_symbol_is_asked_of_its_value():
             condition,
         )
     assert transported(Domain(), {sp.Symbol("c", real=True): u}).conditions == ()
+
+
+def test_a_manifold_of_many_branches_is_not_looked_into():
+    signs = sp.symbols("s0:5", real=True)
+    assert len(on_manifold([s**2 - 1 for s in signs[:4]], Domain())) == 16
+    with pytest.raises(Undecided, match="the constraints have more than 16 branches; split the claim"):
+        on_manifold([s**2 - 1 for s in signs], Domain())

@@ -11,6 +11,7 @@ from canon.expression.graph.common_subexpressions import shared_to_sympy
 from canon.expression.graph.graph import Graph
 from canon.expression.graph.python_source import python_function
 from canon.expression.graph.sums import SharedSums
+from canon.expression.graph.sympy_conversion import NotModelledError
 from canon.expression.symbols.symbol import coordinates, parameters, time
 from canon.mechanics.at_scale.first_order import canonical_derivation
 from canon.mechanics.at_scale.ldl import solved_on_graph
@@ -20,7 +21,7 @@ from canon.mechanics.at_scale.numeric_functions import (
     hamilton_function,
 )
 from canon.mechanics.at_scale.second_order import derivation, derivation_of_lagrangian
-from canon.mechanics.lagrange.body import Particle, PlanarBody, kinetic_energy
+from canon.mechanics.lagrange.body import Particle, PlanarBody, RigidBody, euler_rotation, kinetic_energy
 from canon.mechanics.lagrange.force import gravity, lagrangian_of_bodies
 from canon.mechanics.lagrange.lagrangian import Lagrangian
 from canon.proof.vanish import vanishes
@@ -173,6 +174,50 @@ def test_singular_and_infinite_points_are_refused():
         accelerations([0.0, 0.0], [0.0, 1.0], 0.0)
     with pytest.raises(ArithmeticError, match="not finite"):
         accelerations([0.5, 0.0], [float("nan"), 1.0], 0.0)
+
+
+def test_a_rod_without_thickness_moves_as_two_particles():
+    """Its moment of inertia about its own axis is zero: half the mass at each of ±d along it."""
+    m, g, d = parameters("m g d", positive=True)
+    a, b = coordinates("alpha beta")
+    turned = euler_rotation(a, b, sp.S.Zero)
+    axis = turned[:, 2]
+    inertia = sp.diag(m * d**2, m * d**2, 0)
+    systems = {
+        "rod": [RigidBody(m, tuple(1.5 * axis), inertia, turned)],
+        "pair": [Particle(m / 2, tuple((1.5 + s * d) * axis)) for s in (1, -1)],
+        "longer pair": [Particle(m / 2, tuple((1.5 + 2 * s * d) * axis)) for s in (1, -1)],
+    }
+    rod, pair, longer = (
+        acceleration_function(derivation(bodies, (a, b), field=(0, 0, -g)), {m: 2, g: 9, d: 0.3})(
+            [0.4, 1.1], [0.3, -0.2], 0.0
+        )
+        for bodies in systems.values()
+    )
+    assert np.allclose(rod, pair, rtol=1e-13)
+    assert not np.allclose(rod, longer, rtol=1e-2)
+
+
+def test_a_body_that_does_not_turn_has_no_inertia():
+    inertia = parameters("J", positive=True)
+    angles = {sp.pi / 3: {m, w}, y: {m, w, inertia}, time: {m, w}, c * time**2: {m, w}}
+    for angle, expected in angles.items():
+        block = PlanarBody(m, (x, x**2), inertia, angle)
+        equations = derivation([block], (x, y) if angle == y else (x,), field=(0, -w))
+        assert set(equations.parameters) == expected, angle
+
+
+def test_a_place_with_a_kink_has_no_force_beside_it():
+    """Of |x| the velocity is sign(x) ẋ and its slope zero: gravity along |x| pulls to the kink from both sides."""
+    fall = derivation([Particle(m, (sp.Abs(x), y))], (x, y), field=(-w, 0))
+    accelerations = acceleration_function(fall, {m: 2, w: 10})
+    for place in (-0.5, 0.5):
+        assert accelerations([place, 1.0], [1.0, 1.0], 0.0) == pytest.approx([-10 * np.sign(place), 0])
+
+
+def test_a_place_by_a_function_without_an_operation_is_refused_by_its_name():
+    with pytest.raises(NotModelledError, match=r"besselj in besselj\(0, x\) has no operation"):
+        derivation([Particle(m, (sp.besselj(0, x), y))], (x, y))
 
 
 def test_a_long_chain_conserves_its_energy():

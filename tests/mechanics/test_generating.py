@@ -420,6 +420,8 @@ def test_a_function_without_a_value_generates_nothing():
     for refused in (generated_transformation, generated_inverse, lambda F: of_kind(F, 3)):
         with pytest.raises(NoClosedInverseError, match="could not be solved for"):
             refused(hidden)
+    unknown = GeneratingFunction(2, q * P + sp.log(sp.besselj(0, w)), q, p, Q, P)
+    assert unknown.generates(CanonicalTransformation(q, p, q, p)).undecided
     plain = GeneratingFunction(2, q * P, q, p, Q, P)
     assert generated_transformation(plain).images == (q, p)
     assert vanishes(of_kind(plain, 3).F + p * Q).holds

@@ -60,3 +60,11 @@ def test_masses_of_any_ratio_are_well_conditioned(ratio):
     found = acceleration_function(equations, {m: ratio})([0.5, 0.0], [0.0, 0.0], 0.0)
     assert found.tolist() == [-0.5, -1 / ratio]
     assert mass_condition_function(equations, {m: ratio})([0.5, 0.0], [0.0, 0.0], 0.0) == pytest.approx(1.0)
+
+
+def test_the_condition_of_a_matrix_that_loses_a_row_is_infinite():
+    L = Lagrangian(x**2 * u**2 / 2 + v**2 / 2 + u * v / 4, [x, y])
+    condition = mass_condition_function(derivation_of_lagrangian(L), {})
+    assert condition([0.0, 1.0], [0.0, 0.0], 0.0) == np.inf
+    assert condition([float("nan"), 1.0], [0.0, 0.0], 0.0) == np.inf
+    assert condition([1.0, 1.0], [0.0, 0.0], 0.0) == pytest.approx((1 + 1 / 4) / (1 - 1 / 4))

@@ -183,6 +183,9 @@ def test_a_hamiltonian_without_a_value_is_no_new_hamiltonian():
     refused = is_new_hamiltonian(EXCHANGE, p**2 + w * q, Q**2 - w * P + hidden, [Q, P])
     assert refused.fails
     assert refused.feedback.startswith("K has a value nowhere")
+    unknown = is_new_hamiltonian(EXCHANGE, p**2 + w * q, Q**2 - w * P + sp.log(sp.besselj(0, w)), [Q, P])
+    assert unknown.status is Status.UNDECIDED
+    assert unknown.evidence[0].text.startswith("it was not shown that K has a value anywhere")
 
 
 def test_an_implicit_map_that_can_not_be_solved_is_left_open():
