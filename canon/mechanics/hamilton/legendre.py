@@ -357,7 +357,10 @@ def _of_one_radical(
         return
     at_rest = dict.fromkeys(old, sp.S.Zero)
     right = sp.Matrix([y - exchanged(g, at_rest) for g, y in zip(frozen[:-1], new, strict=True)])
-    column = solve(slopes, right)
+    try:
+        column = solve(slopes, right)
+    except SingularMatrixError:  # of −√v all slopes stand in r: 1/(2 r) holds no v besides
+        return
     in_r = {x: entry(column, i, 0) for i, x in enumerate(old)}
     total = sp.Add(
         *(value * y for value, y in zip(in_r.values(), new, strict=True)), -exchanged(frozen[-1], in_r)
