@@ -256,3 +256,55 @@ def test_a_parameter_called_as_a_momentum_is_refused_where_the_hamiltonian_is_ma
         hamiltonian(L)
     other = sp.Symbol("k_x", real=True)
     assert other**2 / 2 + a * x**2 / 2 == hamiltonian(L, p=[other]).H
+
+
+@pytest.mark.parametrize(
+    ("L", "H", "domain"),
+    [
+        (-sp.sqrt(x.dot), lambda p: -1 / (4 * p), lambda p: p < 0),
+        (-1 / sp.sqrt(1 + x.dot), lambda p: sp.Rational(3, 2) * sp.cbrt(2 * p) - p, lambda p: p > 0),
+        (sp.cbrt(x.dot), lambda p: -2 / sp.sqrt(27 * p), lambda p: p > 0),
+    ],
+    ids=["square root", "one over a root", "cube root"],
+)
+def test_a_root_alone_has_a_hamiltonian(L, H, domain):
+    """Its second derivative vanishes nowhere, though ∂L/∂q̇ holds no velocity beside the root."""
+    p, there = x.momentum, Domain((x.dot > 0,))
+    found = hamiltonian(Lagrangian(L, [x]), domain=there)
+    assert vanishes(found.H - H(p), Domain((domain(p),))).holds
+    assert is_hamiltonian_of(Lagrangian(L, [x]), H(p), [p], there).holds
+    assert is_hamiltonian_of(Lagrangian(L, [x]), 2 * H(p), [p], there).fails
+    with pytest.raises(LegendreError, match="singular along"):
+        hamiltonian(Lagrangian(sp.sqrt(x.dot**2), [x]))
+
+
+@pytest.mark.parametrize(
+    "energy",
+    [
+        x.dot**2 * sp.sqrt(1 + x.dot**2),
+        sp.sqrt(1 + x.dot**2) + x.dot**4,
+        sp.sqrt(1 + x.dot**2) + x.dot**2 / 2,
+        sp.sqrt(1 - x.dot**2) * sp.exp(x.dot),
+    ],
+    ids=str,
+)
+def test_velocities_without_a_closed_form_are_told(energy):
+    with pytest.raises(LegendreError, match="could not be found in closed form on this domain"):
+        hamiltonian(Lagrangian(energy, [x]))
+    assert is_hamiltonian_of(Lagrangian(energy, [x]), x.momentum**2 / 2, [x.momentum]).fails
+
+
+def test_the_energy_of_a_power_of_a_root():
+    """L = (1 + v²)^(3/2): p = 3 v √(1 + v²)."""
+    L = Lagrangian((1 + x.dot**2) ** sp.Rational(3, 2), [x])
+    H = hamiltonian(L).H
+    for v in (sp.Rational(1, 3), 1, -2):
+        p = L.momenta[0].subs(x.dot, v)
+        assert sp.N(H.subs(x.momentum, p) - (p * v - L.L.subs(x.dot, v)), 30) == pytest.approx(0, abs=1e-25)
+
+
+def test_a_hamiltonian_of_which_no_value_is_known_is_left_open():
+    p = x.momentum
+    convex = Lagrangian(sp.cosh(x.dot) + x.dot**2, [x])
+    assert is_hamiltonian_of(convex, p**2 * sp.besselj(0, p), [p]).undecided
+    assert is_hamiltonian_of(convex, p**2, [p]).fails
