@@ -8,6 +8,7 @@ between two pieces, where χ = 1/2, the value is the mean of both. A root of wha
 from __future__ import annotations
 
 import functools
+import itertools
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
@@ -21,6 +22,7 @@ __all__ = ["without_pieces"]
 _LONG = 60
 """Operations of a radicand that is compared with a condition."""
 
+_INEQUALITIES = (sp.StrictGreaterThan, sp.GreaterThan, sp.StrictLessThan, sp.LessThan)
 _MADE_OF_PIECES = (sp.Piecewise, sp.Max, sp.Min, sp.Heaviside)
 
 
@@ -88,10 +90,34 @@ def _pieces(whole: Any) -> Any:
             "Piecewise(…, (value, True))"
         )
     *others, value = _values(whole)
-    for value_here, condition in zip(reversed(others), reversed(conditions[:-1]), strict=True):
-        here = _number(condition, whole)
-        value = value_here * here + value * (1 - here)
+    for group in reversed(_apart(list(zip(others, conditions[:-1], strict=True)))):
+        numbers = [_number(condition, whole) for _, condition in group]
+        held = sp.Add(*(each * number for (each, _), number in zip(group, numbers, strict=True)))
+        value = held + value * (1 - sp.Add(*numbers))
     return value
+
+
+def _apart(pieces: list[tuple[Any, Any]]) -> list[list[tuple[Any, Any]]]:
+    """Return pieces in groups of which no two hold at once, so that on a border between two they are all there is."""
+    groups: list[list[tuple[Any, Any]]] = []
+    for piece in pieces:
+        if groups and all(_exclude(piece[1], other) for _, other in groups[-1]):
+            groups[-1].append(piece)
+        else:
+            groups.append([piece])
+    return groups
+
+
+def _exclude(one: Any, other: Any) -> bool:
+    """Tell whether of two conditions, as far as they are seen to, one says a ≥ b where the other says a < b."""
+    ways = itertools.product(_parts(one, sp.Or), _parts(other, sp.Or))
+    return all(any(a + b == 0 for a in _gaps(way) for b in _gaps(another)) for way, another in ways)
+
+
+def _gaps(condition: Any) -> list[Any]:
+    """Return what is positive where a condition holds."""
+    relations: list[Any] = [each for each in _parts(condition, sp.And) if isinstance(each, _INEQUALITIES)]
+    return [each.gts - each.lts for each in relations]
 
 
 def _values(whole: Any) -> Iterator[Any]:
@@ -108,7 +134,7 @@ def _parts(condition: Any, kind: type[sp.And | sp.Or]) -> tuple[Any, ...]:
 
 def _with_values_elsewhere(value: Any, condition: Any) -> Any:
     """Return a piece in which roots of what is positive where its condition holds are zero where it does not."""
-    if not isinstance(condition, sp.StrictGreaterThan | sp.GreaterThan | sp.StrictLessThan | sp.LessThan):
+    if not isinstance(condition, _INEQUALITIES):
         return value
     greater: Any = condition.gts
     gap = greater - condition.lts
@@ -127,7 +153,7 @@ def _rises_with(base: Any, gap: Any) -> bool:
 
 def _number(condition: Any, whole: Any) -> Any:
     """Return χ of a condition."""
-    if isinstance(condition, sp.StrictGreaterThan | sp.GreaterThan | sp.StrictLessThan | sp.LessThan):
+    if isinstance(condition, _INEQUALITIES):
         greater: Any = condition.gts
         return _where(greater - condition.lts)
     if isinstance(condition, sp.Eq | sp.Ne):  # which is no stretch of any motion
