@@ -1,4 +1,4 @@
-"""Piecewise functions written with signs and moduli: the values of each piece, roots of what is negative elsewhere."""
+"""Piecewise functions written with signs and moduli: values in pieces and on borders, and roots elsewhere."""
 
 from __future__ import annotations
 
@@ -58,3 +58,30 @@ def test_a_motion_may_start_where_the_root_of_another_piece_has_no_value(inner_f
     turning = (5 / 4 * 0.51**2) ** 0.4  # where 2/5 x^(5/2) is the energy
     assert turning - 1e-4 < motion.y[0].max() <= turning
     assert motion.y[1][-1] == pytest.approx(-0.51, abs=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("function", "mean"),
+    [
+        (sp.Piecewise((8, (u > 0) & (u < 1)), (2, u <= 0), (32, True)), {0: 5, 1: 20}),
+        (sp.Piecewise((2, u <= 0), (8, u < 1), (32, True)), {0: 5, 1: 20}),
+        (sp.Piecewise((32, (u < 0) | (u > 1)), (2, (u >= 0) & (u <= 1)), (8, True)), {0: 17, 1: 17}),
+        (sp.Piecewise((8, (u > 0) & (u < 1)), (2, (u <= 0) & (v > 0)), (32, True)), {0: 5, 1: 20}),
+    ],
+)
+def test_on_a_border_between_two_pieces_the_value_is_their_mean(
+    function: sp.Expr, mean: dict[int, int]
+) -> None:
+    written = without_pieces(function)
+    assert {at: written.subs({u: at, v: 1}) for at in mean} == mean
+    for at in PLACES:
+        assert written.subs({u: at, v: 1}) == function.subs({u: at, v: 1})
+
+
+def test_a_sample_on_a_border_has_the_energy_of_the_motion() -> None:
+    x = coordinates("x")
+    soft = sp.Rational(2, 5) * x ** sp.Rational(5, 2)
+    wall = sp.Piecewise((soft, (x > 0) & (x < 1)), (0, x <= 0), (x - sp.Rational(3, 5), True))
+    motion = propagate(Hamiltonian(x.momentum**2 / 2 + wall, [x], [x.momentum]), (0, 4), [-1, 0.5], samples=8)
+    assert motion.y[0][4] == 0
+    assert abs(motion.energy_error).max() < 1e-14
