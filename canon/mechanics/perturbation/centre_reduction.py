@@ -20,6 +20,7 @@ from sympy import Expr, Symbol
 from canon.cached_property import cached_property
 from canon.expression.symbols.user_input import by_symbol, given_expression, given_kind
 from canon.frozen_mapping import FrozenMapping
+from canon.mechanics.algebra.substitution import exchanged
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.perturbation.enclosed.enclosed_diagonal import (
     EnclosedDiagonalForm,
@@ -126,7 +127,11 @@ class CentreManifold:
         ------
         PrecisionError
             Where an error, in these variables, is more than the digits allow.
+        ValueError
+            Where no direction is elliptic.
         """
+        if not self.q:
+            raise ValueError("no direction is elliptic, so that the centre manifold is the equilibrium alone")
         return Hamiltonian(self._in_real_variables(self.parts), self.q, self.p)
 
     @cached_property
@@ -199,7 +204,8 @@ def centre_manifold(
     Parameters
     ----------
     H
-        A Hamiltonian without the time in it, of powers, exponentials, logarithms, sines and cosines.
+        A Hamiltonian without the time in it, of powers, exponentials, logarithms, sines and cosines; floats are taken
+        as what they are.
     order
         The highest degree, from 2, of the Hamiltonian on the manifold.
     at
@@ -247,10 +253,12 @@ def centre_manifold(
         )
     place = by_symbol(at or {}, (*H.q, *H.p), "at")
     refuse_kinks(H.H, (*H.q, *H.p))
+    floats = {x: sp.Rational(x) for x in H.H.atoms(sp.Float)}
+    exact = Hamiltonian(exchanged(H.H, floats), H.q, H.p, H.t) if floats else H
     bits = 32 + int(3.33 * digits) + 8 * order
     while True:
         try:
-            found = _at_precision(H, order, place, parameters or {}, digits, bits)
+            found = _at_precision(exact, order, place, parameters or {}, digits, bits)
         except PrecisionError:
             if 2 * bits > MOST_BITS:
                 raise

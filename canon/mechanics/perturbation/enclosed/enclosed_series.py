@@ -93,7 +93,7 @@ class _Expansion:
             return self._sum([self.of(part) for part in f.args])
         if f.is_Mul:
             return self._product([self.of(part) for part in f.args])
-        if f.is_Pow and not f.exp.has(*self.displacements):
+        if f.is_Pow:
             return self._power(f)
         return self._of_function(f)
 
@@ -127,11 +127,13 @@ class _Expansion:
         return u[0].coefficients.get((0,) * self.ring.size, acb(0)).real + arb(0, u[0].bound)
 
     def _power(self, f: Any) -> Parts:
+        if not f.exp.is_Rational:
+            raise NotAnalyticError(
+                f"{f}: only powers with rational exponents are expanded in balls; write exp({f.exp}*log({f.base}))"
+            )
         u, exponent = self.of(f.base), f.exp
         if exponent.is_Integer and 0 < exponent <= self.order + 1:
             return self._product([u] * int(exponent))
-        if not exponent.is_Rational:
-            raise NotAnalyticError(f"{f}: only powers with rational exponents are expanded in balls")
         start = self._start(u)
         if start.contains(0):
             raise NotAnalyticError(f"{f} has no Taylor series where {f.base} = 0")
