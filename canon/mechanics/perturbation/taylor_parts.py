@@ -63,7 +63,7 @@ def constants_in(f: Any, variables: Sequence[Symbol]) -> Iterator[Expr]:
         for part in f.args:
             yield from constants_in(part, variables)
     elif f not in variables:
-        inner = f.base if f.is_Pow and not f.exp.has(*variables) else f.args[-1]
+        inner = _inside(f, variables)
         if not (f.is_Pow and f.exp.is_Integer):
             yield from (c for c in _derivatives(f, inner, inner.subs(dict.fromkeys(variables, 0)), 2))
         yield from constants_in(inner, variables)
@@ -110,12 +110,7 @@ def _series(f: Any, variables: tuple[Symbol, ...], ring: PolynomialRing, order: 
 
 def _of_function(f: Any, variables: tuple[Symbol, ...], ring: PolynomialRing, order: int) -> Parts:
     """Return the series of g(u) through the Taylor series of g at u(0)."""
-    if f.is_Pow and not f.exp.has(*variables):
-        inner = f.base
-    elif (len(f.args) == 1 and f.is_Function) or isinstance(f, sp.exp):
-        inner = f.args[0]
-    else:
-        raise NotAnalyticError(f"{f} is no power and no function of one variable; write it with exp and log")
+    inner = _inside(f, variables)
     u = _series(inner, variables, ring, order)
     start = u.pop(0, ring.zero)
     at = ring.expression(start, [sp.S.Zero] * len(variables))
@@ -128,6 +123,17 @@ def _of_function(f: Any, variables: tuple[Symbol, ...], ring: PolynomialRing, or
         if not power:
             break
     return total
+
+
+def _inside(f: Any, variables: Sequence[Symbol]) -> Any:
+    """Return u of a power or a function of u alone."""
+    if f.is_Pow and not f.exp.has(*variables):
+        return f.base
+    if (len(f.args) == 1 and f.is_Function) or isinstance(f, sp.exp):
+        return f.args[0]
+    raise NotAnalyticError(
+        f"{f} is no power and no function of one variable; write it with such, as exp(y*log(x)) or atan(y/x)"
+    )
 
 
 def _derivatives(f: Any, inner: Any, at: Any, order: int) -> Iterator[Expr]:
