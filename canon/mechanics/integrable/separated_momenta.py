@@ -262,10 +262,8 @@ def _share_out(work: _Separation, functions: Sequence[Expr]) -> bool:
 
 def _multiplier(leading: dict[Symbol, Expr], domain: Domain) -> Expr | None:
     """Return D with D·a_i a function of q_i alone, for the coefficients a_i of p_i²."""
-    (first, a), *others = leading.items()
-    if not others:
-        return None
-    ratio = product_parts(a / others[0][1], [[first], [s for s in leading if s != first]], domain)
+    (first, a), (_, b), *_ = leading.items()  # one coordinate alone was the last
+    ratio = product_parts(a / b, [[first], [s for s in leading if s != first]], domain)
     return None if ratio is None else ratio[0] / a
 
 

@@ -92,9 +92,11 @@ def characteristic_exponents(hessian: sp.MatrixBase) -> list[tuple[Expr, int]]:
     even = sp.Poly(powers, square)
     found = sp.roots(even, multiple=False)
     if sum(found.values()) < n:
+        remedy = (
+            "put numbers for the parameters" if hessian.free_symbols else "change to normal coordinates first"
+        )
         raise NoDiagonalFormError(
-            f"the squares of the exponents satisfy {even.as_expr()} = 0, which is not solved in radicals; "
-            "put numbers for the parameters"
+            f"the squares of the exponents satisfy {even.as_expr()} = 0, which is not solved in radicals; {remedy}"
         )
     return [(_root(mu), times) for mu, times in found.items()]
 
@@ -269,15 +271,12 @@ def _elliptic_pairs(rows: list[Row], ring: PolynomialRing) -> list[tuple[Row, Ro
 
 
 def _not_isotropic(rows: list[Row], ring: PolynomialRing) -> Row:
-    """Return a row that is not isotropic, of rows that all are: the sum of two that are not orthogonal."""
+    """Return a row that is not isotropic, of rows that all are: ℓ + i c m with c = {ℓ, m̄}, whose form is −2i |c|²."""
     first = rows[0]
     other = next(row for row in rows[1:] if _form(first, _bar(row), ring))
     pairing = _form(first, _bar(other), ring)
     turned = [x * pairing for x in other]
-    found = [x + y * ring.i for x, y in zip(first, turned, strict=True)]
-    if not _form(found, _bar(found), ring):
-        found = [x + y * (ring.one - ring.i) for x, y in zip(found, turned, strict=True)]
-    return found
+    return [x + y * ring.i for x, y in zip(first, turned, strict=True)]
 
 
 def _dual_pairs(
