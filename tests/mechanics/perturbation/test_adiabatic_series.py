@@ -86,3 +86,22 @@ def test_what_has_no_invariants_is_refused(H, given, said):
     fast = [z for z in H.q if z != x]
     with pytest.raises(AveragingError, match=said):
         adiabatic_invariants(H, fast, 2, eps, **given)
+
+
+@pytest.mark.parametrize(
+    ("H", "angles", "order", "said"),
+    [
+        (SLOW_PAIR, theta, 0, "the order should be a whole number from 1, not 0"),
+        (SLOW_PAIR, I, 1, "the angles should be among the coordinates theta, x"),
+        (SLOW_PAIR, [], 1, "the angles should be among the coordinates theta, x"),
+        (
+            Hamiltonian(I + eps * I * sp.cos(theta - SLOW_PAIR.t), theta, I),
+            theta,
+            1,
+            "H depends on t; write the slow time as a symbol of its own, slow_time",
+        ),
+    ],
+)
+def test_angles_orders_and_times_that_are_none_are_refused_with_what_to_give(H, angles, order, said):
+    with pytest.raises(ValueError, match=said):
+        adiabatic_invariants(H, angles, order, eps, slow_q=[z for z in H.q if z == x])

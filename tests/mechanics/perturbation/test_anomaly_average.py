@@ -213,3 +213,16 @@ def test_the_pear_shape_in_first_order():
     e = sp.sqrt(1 - G**2 / L**2)
     due = sp.Rational(3, 8) * k * mu**4 / (G**5 * L**3) * e * s * (1 - 5 * H**2 / G**2) * sin(g)
     assert sp.simplify(found.in_momenta()[0] - due) == 0
+
+
+@pytest.mark.parametrize(
+    ("angles", "momenta", "said"),
+    [
+        ([g], [L], "1 angle and 1 momentum; give g with L, G or g, h with L, G, H"),
+        ([g, h], [L, G], "2 angles and 2 momenta; give g with L, G"),
+        ([], [L], "0 angles and 1 momentum; give g with L, G"),
+    ],
+)
+def test_angles_and_momenta_that_do_not_belong_together_are_counted(angles, momenta, said):
+    with pytest.raises(ValueError, match=said):
+        average_over_anomaly(k / r**2, mu, r, f, angles, momenta)

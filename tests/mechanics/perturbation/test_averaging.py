@@ -197,3 +197,37 @@ def test_an_exact_resonance_keeps_the_order_that_was_reached():
 def test_what_has_no_average_is_refused(H, error, said):
     with pytest.raises(error, match=said):
         average(H, theta, 2, eps)
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: average(QUARTIC, I, 1, eps), "the angles should be among the coordinates theta"),
+        (lambda: average(QUARTIC, [], 1, eps), "the angles should be among the coordinates theta"),
+        (lambda: average(QUARTIC, theta, 0, eps), "the order should be a whole number from 1, not 0"),
+        (
+            lambda: adiabatic_invariant(average(QUARTIC, theta, 1, eps), theta),
+            r"theta is no momentum of a fast angle; those are \(I,\)",
+        ),
+        (lambda: lie_series(q, eps * q, [q], [p], 2, eps), "W depends on epsilon; lie_deprit takes such a W"),
+        (lambda: lie_series(q, p, [q], [p], -1, eps), "the order should be a whole number from 0, not -1"),
+        (lambda: lie_deprit(q, p, [q], [p], -1, eps), "the order should be a whole number from 0, not -1"),
+    ],
+)
+def test_angles_orders_and_small_quantities_that_are_none_are_refused_with_what_to_give(call, said):
+    with pytest.raises(ValueError, match=said):
+        call()
+
+
+def test_what_lie_series_refuses_is_taken_by_deprits_flow():
+    """W = ε q moves p alone, dp/dε = {p, W} = −ε: p − ε²/2 at ε."""
+    assert sp.expand(lie_deprit(p, eps * q, [q], [p], 3, eps) - (p - eps**2 / 2)) == 0
+    assert lie_deprit(q, eps * q, [q], [p], 3, eps) == q
+
+
+def test_a_wave_with_one_of_its_two_harmonics_is_complex():
+    alone = {(-1, 2): 1 + 2 * sp.I}
+    found = fourier_expression(alone, [theta, phi])
+    assert sp.expand((found - (1 + 2 * sp.I) * sp.exp(sp.I * (2 * phi - theta))).rewrite(sp.exp)) == 0
+    assert sp.expand((found - (1 + 2 * sp.I) * sp.exp(sp.I * (theta - 2 * phi))).rewrite(sp.exp)) != 0
+    assert fourier_series(found, [theta, phi]) == {k: sp.expand(c) for k, c in alone.items()}

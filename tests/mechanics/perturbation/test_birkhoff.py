@@ -15,18 +15,23 @@ from canon.mechanics.perturbation.birkhoff import NormalFormError, birkhoff_norm
 from canon.mechanics.perturbation.coefficient_field import NoExactFieldError
 from canon.mechanics.perturbation.gustavson import formal_integral
 from canon.mechanics.perturbation.near_identity import is_normal_form, near_identity_map
-from canon.mechanics.perturbation.quadratic_form import NoDiagonalFormError
+from canon.mechanics.perturbation.quadratic_form import NoDiagonalFormError, characteristic_exponents
 from canon.mechanics.perturbation.remainder import optimal_order, remainder_norms
 from canon.mechanics.perturbation.taylor_parts import NotAnalyticError
 
 q, p = sp.symbols("q p", real=True)
-x, y, px, py = sp.symbols("x y p_x p_y", real=True)
+x, y, px, py, w = sp.symbols("x y p_x p_y w", real=True)
 KINETIC = (px**2 + py**2) / 2
+WELL = q**2 / 2
 HENON_HEILES = Hamiltonian(KINETIC + (x**2 + y**2) / 2 + x**2 * y - y**3 / 3, [x, y], [px, py])
 
 
 def two(potential, kinetic=KINETIC):
     return Hamiltonian(kinetic + potential, [x, y], [px, py])
+
+
+def one(potential):
+    return Hamiltonian(p**2 / 2 + potential, q, p)
 
 
 def first_degree(f, variables):
@@ -235,3 +240,126 @@ def test_the_root_of_a_square_may_have_either_sign_but_an_action_may_not():
     for H in (p**2 / 2 + (w - 1) ** 2 * q**2 / 2, (w - 1) * p**2 / 2 + q**2 / (2 * (w - 1))):
         with pytest.raises(NoDiagonalFormError, match="told from its negative"):
             birkhoff_normal_form(Hamiltonian(H, q, p), 2)
+
+
+@pytest.mark.parametrize(
+    ("H", "order", "error", "said"),
+    [
+        (one(WELL), 1, ValueError, "the order should be a whole number from 2, not 1"),
+        (one(WELL * (1 + one(0).t)), 4, ValueError, "H depends on the time; take"),
+        (one(WELL + 1 / q), 4, NormalFormError, "∂H/∂q has no value at the point; take an equilibrium where"),
+        (one(WELL + q ** sp.Rational(7, 2)), 4, NotAnalyticError, r"q\*\*\(7/2\) has no Taylor series where q = 0"),
+        (one(WELL + abs(w) * q**3), 4, NoExactFieldError, r"Abs\(w\) is no algebraic number.*write a parameter for it"),
+        (two(x**2 + y**2 + x**2 * sp.atan2(y, 1 + x)), 4, NotAnalyticError, r"atan2\(y, x \+ 1\).*or atan\(y/x\)"),
+        (two(x**2 + y**2 + x**2 * (1 + x) ** y), 4, NotAnalyticError, r"\(x \+ 1\)\*\*y.*as exp\(y\*log\(x\)\)"),
+    ],
+)  # fmt: skip
+def test_what_is_no_order_and_no_analytic_hamiltonian_is_refused_with_what_to_give(H, order, error, said):
+    with pytest.raises(error, match=said):
+        birkhoff_normal_form(H, order)
+
+
+def test_what_the_refusals_advise_has_a_normal_form():
+    """x² atan(y/(1 + x)) = x² y + … and x² exp(y log(1 + x)) = x² + x³ y + … ."""
+    for advised, series in (
+        (x**2 * sp.atan(y / (1 + x)), x**2 * y - x**3 * y),
+        (x**2 * sp.exp(y * sp.log(1 + x)), x**2 + x**3 * y),
+    ):
+        given, written_out, twin = (
+            birkhoff_normal_form(two(x**2 / 2 + 2 * y**2 + f), 4).K for f in (advised, series, 2 * series)
+        )
+        assert given == written_out
+        assert given != twin
+
+
+def test_a_root_beside_a_parameter_stays_in_the_coefficients():
+    """ω I − 15 α² I²/(4 ω⁴) of p²/2 + ω² q²/2 + α q³, with ω² = 2 and α = √2 w."""
+    form = birkhoff_normal_form(one(q**2 + sp.sqrt(2) * w * q**3), 4)
+    (I,) = form.actions
+    assert sp.expand(form.in_actions() - sp.sqrt(2) * I + sp.Rational(15, 8) * w**2 * I**2) == 0
+    assert sp.expand(form.in_actions() - sp.sqrt(2) * I + sp.Rational(15, 4) * w**2 * I**2) != 0
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_sign_of_an_action_is_proved_where_sympy_does_not_know_it(sign):
+    """w² − w + 1 = (w − 1/2)² + 3/4 is positive."""
+    size = w**2 - w + 1
+    form = birkhoff_normal_form(Hamiltonian(sign * (size * p**2 + q**2 / size) / 2, q, p), 2)
+    assert form.frequencies == (sign,)
+    assert sp.simplify(form.in_actions() - sign * form.actions[0]) == 0
+    assert sp.simplify(form.in_variables() - form.source.H) == 0
+
+
+def test_two_frequencies_of_opposite_signs_turn_one_plane():
+    """L = x p_y − y p_x is I₁ − I₂ of (x + i y, p_x + i p_y), of which each has no action by itself."""
+    form = birkhoff_normal_form(two(x**4, x * py - y * px - KINETIC + KINETIC), 4)
+    assert {*form.frequencies} == {1, -1}
+    assert is_normal_form(form).holds
+    assert is_normal_form(replace(form, parts={**form.parts, 4: -form.parts[4]})).fails
+    mean = sp.Rational(3, 8) * (x**2 + y**2) ** 2  # of (x cos t − y sin t)⁴
+    assert sp.expand(form.in_variables() - (x * py - y * px) - mean) == 0
+
+
+def test_exponents_of_five_springs_are_not_solved_in_radicals():
+    """det(μ + V) of a chain whose squares of exponents μ satisfy an equation of the fifth degree with the group S₅."""
+    k = sp.Symbol("k", positive=True)
+
+    def hessian(*springs):
+        V = sp.Matrix(5, 5, lambda i, j: springs[i] if i == j else -1 if abs(i - j) == 1 else 0)
+        return sp.diag(V, sp.eye(5))
+
+    for springs, remedy in (
+        ((2, 3, 6, 11, 18), "change to normal coordinates"),
+        ((2, 3, 6, 11, 18 * k), "put numbers for the parameters"),
+    ):
+        with pytest.raises(NoDiagonalFormError, match=f"not solved in radicals; {remedy}"):
+            characteristic_exponents(hessian(*springs))
+    found = [exponent for exponent, _ in characteristic_exponents(hessian(2, 2, 2, 2, 2))]
+    due = [2 * sp.sin(n * sp.pi / 12) for n in range(1, 6)]  # of a chain of equal springs between walls
+    assert sorted(abs(complex(f)) for f in found) == pytest.approx([float(f) for f in due], abs=1e-14)
+
+
+def test_an_integral_with_a_wrong_term_is_refuted_where_its_rate_begins():
+    found = formal_integral(birkhoff_normal_form(one(WELL + q**3 + q**4), 4))
+    assert found.is_formal_integral().holds
+    for degree in (3, 4):
+        wrong = replace(found, parts={**found.parts, degree: -found.parts[degree]}).is_formal_integral()
+        assert wrong.fails
+        assert wrong.evidence[0].text == f"at degree {degree}"
+        due = poisson_bracket(
+            sp.expand(-2 * found.form.expression({degree: found.parts[degree]})), (p**2 + q**2) / 2, [q], [p]
+        )
+        assert sp.expand(wrong.residual - due) == 0
+
+
+def test_a_map_with_a_wrong_term_is_not_canonical_to_its_degree():
+    there = near_identity_map(birkhoff_normal_form(HENON_HEILES, 5))
+    assert there.is_canonical().holds
+    first, *others = there.images
+    for degree in (2, 3):
+        wrong = replace(there, images=({**first, degree: -first[degree]}, *others)).is_canonical()
+        assert wrong.fails
+        assert wrong.evidence[0].text == f"at degree {degree - 1}"
+
+
+def test_norms_are_those_of_the_scaled_problem():
+    """q = Q/√ω makes p²/2 + ω² q²/2 + q³ to ω (H₂ + ω^(−5/2) Q³): cubes scale by ω^(−3/2), what follows by ω⁻⁴."""
+    unit = remainder_norms(birkhoff_normal_form(one(WELL + q**3), 4), 0.1)
+    found = remainder_norms(birkhoff_normal_form(one(q**2 + q**3), 4), 0.1)
+    assert found[2] == pytest.approx(unit[2] * 2**-0.75, rel=1e-14)
+    assert found[3] == pytest.approx(unit[3] / 4, rel=1e-14)
+
+
+def test_norms_need_numbers_and_radii_of_each_pair():
+    with pytest.raises(ValueError, match="a norm needs numbers: put values for the parameters into H"):
+        remainder_norms(birkhoff_normal_form(one(WELL + w * q**3), 4), 0.1)
+    form = birkhoff_normal_form(one(WELL + q**3), 4)
+    for radii in (0, -1, [0.1, 0.2], [], float("inf"), float("nan")):
+        with pytest.raises(ValueError, match="radii should be a positive number, or 1 of them, not"):
+            remainder_norms(form, radii)
+    assert remainder_norms(form, [0.1]) == remainder_norms(form, sp.Rational(1, 10))
+
+
+def test_nothing_is_left_of_an_oscillator_at_any_order():
+    found = optimal_order(birkhoff_normal_form(one(WELL), 5), 0.1)
+    assert (found.order, found.norm, found.reached) == (5, 0.0, False)

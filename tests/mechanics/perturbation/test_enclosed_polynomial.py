@@ -2,11 +2,12 @@
 
 from fractions import Fraction
 
+import pytest
 from flint import acb, arb, fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from canon.mechanics.perturbation.enclosed.enclosed_polynomial import FixedPointRing
+from canon.mechanics.perturbation.enclosed.enclosed_polynomial import FixedPointRing, PrecisionError
 
 RING = FixedPointRing(2, 40)
 parts = st.fractions(min_value=-3, max_value=3, max_denominator=7)
@@ -87,3 +88,18 @@ def test_the_wrong_twin_is_not_enclosed():
         (Fraction(1) + Fraction(1, 10**9), Fraction(2)),
     ):
         assert not holds(enclosed(f).times(3), {(1, 0): wrong})
+
+
+def test_a_complex_polynomial_times_an_imaginary_one():
+    """(x + 2i y) 3i = −6 y + 3i x."""
+    f, i3 = RING.variable(0) + RING.variable(1) * RING.constant(acb(0, 2)), RING.constant(acb(0, 3))
+    due = {(1, 0): (Fraction(0), Fraction(3)), (0, 1): (Fraction(-6), Fraction(0))}
+    assert holds(f * i3, due)
+    assert holds(i3 * f, due)
+    assert not holds(f * i3, scaled(due, -1))
+
+
+@pytest.mark.parametrize("number", [acb(1) / acb(0), acb(0, arb(0, float("inf")))], ids=["pole", "anything"])
+def test_a_number_without_bounds_makes_no_polynomial(number):
+    with pytest.raises(PrecisionError, match="not known to its last whole digit"):
+        RING.constant(number)

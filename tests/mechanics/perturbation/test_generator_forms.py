@@ -61,3 +61,13 @@ def test_parts_of_the_fifth_degree_take_account_of_how_those_below_act_on_each_o
     found = lie_series(H.H, form.expression(parts), H.q, H.p, 3)
     assert degrees(found, 5) == degrees(form.in_variables(), 5)
     assert 5 in parts
+
+
+def test_where_the_map_has_no_quadratic_terms_the_generators_have_no_cubic_ones():
+    form = birkhoff_normal_form(Hamiltonian((px**2 + x**2) / 2 + x**4, x, px), 4)
+    for generator in (hori_generator(form), deprit_generator(form)):
+        assert [*generator] == [4]
+    chi = form.expression(hori_generator(form))
+    H4 = (px**2 + x**2) / 2 + x**4
+    assert degrees(lie_series(H4, chi, [x], [px], 1), 4) == degrees(form.in_variables(), 4)
+    assert degrees(lie_series(H4, -chi, [x], [px], 1), 4) != degrees(form.in_variables(), 4)

@@ -2,11 +2,12 @@
 
 import pytest
 import sympy as sp
+from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from canon.mechanics.hamilton.bracket import poisson_bracket
-from canon.mechanics.perturbation.coefficient_field import ring_over
+from canon.mechanics.perturbation.coefficient_field import NoExactFieldError, ring_over
 from canon.mechanics.perturbation.lie_transform import Brackets
 from canon.mechanics.perturbation.phase_polynomial import PolynomialRing
 
@@ -88,3 +89,38 @@ def test_a_number_outside_of_the_field_is_refused_with_what_the_field_is_made_of
     with pytest.raises(ValueError) as refused:
         FIELDS[name][0].number(sp.pi)
     assert str(refused.value) == f"pi is not a rational function of {made_of}"
+
+
+def test_nothing_has_no_reciprocal():
+    for ring, unit in FIELDS.values():
+        with pytest.raises(ZeroDivisionError, match="0 has no reciprocal"):
+            (ring.number(unit) - ring.number(unit)).inverse()
+        assert ring.number(2 * unit).inverse() * ring.number(unit) == ring.rational(fmpq(1, 2))
+
+
+def test_parameters_stand_beside_an_algebraic_number():
+    """(1 + √2 k)² = 1 + 2√2 k + 2 k² in ℚ(√2)[k], and √2 is no rational number there."""
+    ring = ring_over([sp.sqrt(2), k], 2)
+    number = ring.number(1 + sp.sqrt(2) * k)
+    assert number * number == ring.number(1 + 2 * sp.sqrt(2) * k + 2 * k**2)
+    assert number * number != ring.number(1 + 2 * k + 2 * k**2)
+    assert number * ring.number(1 - sp.sqrt(2) * k) == ring.number(1 - 2 * k**2)
+
+
+@pytest.mark.parametrize(
+    ("constants", "said"),
+    [
+        (
+            [sp.sqrt(n) for n in (2, 3, 5, 7)],
+            r"the roots sqrt\(2\), sqrt\(3\), sqrt\(5\), sqrt\(7\) .* too large a degree; take parameters",
+        ),
+        (
+            [sp.sqrt(k), sp.sqrt(sp.Symbol("m", positive=True))],
+            r"sqrt\(k\), sqrt\(m\) are independent roots; give frequencies names",
+        ),
+    ],
+)
+def test_too_many_roots_for_one_field_are_named(constants, said):
+    with pytest.raises(NoExactFieldError, match=said):
+        ring_over(constants, 2)
+    assert ring_over([*constants[:1], 1 / constants[0]], 2).root == constants[0]

@@ -17,6 +17,7 @@ from canon.mechanics.perturbation.near_identity import near_identity_map
 from canon.mechanics.perturbation.resonant.resonant_orbits import NotIsolatedError, resonant_orbits
 
 x, y, px, py = sp.symbols("x y p_x p_y", real=True)
+w = sp.Symbol("w", positive=True)
 KINETIC = (px**2 + py**2) / 2
 HENON_HEILES = Hamiltonian(KINETIC + (x**2 + y**2) / 2 + x**2 * y - y**3 / 3, [x, y], [px, py])
 ONE_TO_TWO = Hamiltonian(KINETIC + x**2 / 2 + 2 * y**2 + x**2 * y, [x, y], [px, py])
@@ -118,3 +119,22 @@ def turns_in_one_sense(start):
 def test_what_has_no_resonant_orbits_is_refused(H, order, energy, said):
     with pytest.raises(ValueError, match=said):
         resonant_orbits(birkhoff_normal_form(H, order), energy)
+
+
+@pytest.mark.parametrize(
+    ("H", "resonances", "said"),
+    [
+        (Hamiltonian(KINETIC - x**2 / 2 + y**2 + x**2 * y, [x, y], [px, py]), None, "of two elliptic pairs"),
+        (Hamiltonian(px**2 / 2 + x**2 / 2 + x**3, x, px), None, "of two elliptic pairs"),
+        (
+            Hamiltonian(KINETIC + w**2 * (x**2 / 2 + 2 * y**2) + x**2 * y, [x, y], [px, py]),
+            None,
+            "put numbers for the parameters into H before the normal form",
+        ),
+        (ONE_TO_TWO, [(1, 0), (0, 1)], "several resonances, and no integral beside itself"),
+    ],
+)
+def test_a_normal_form_without_one_resonance_of_two_frequencies_is_refused(H, resonances, said):
+    form = birkhoff_normal_form(H, 4, resonances=resonances)
+    with pytest.raises(ValueError, match=said):
+        resonant_orbits(form, 0.01)
