@@ -340,3 +340,55 @@ def test_a_manifold_of_many_branches_is_not_looked_into():
     assert len(on_manifold([s**2 - 1 for s in signs[:4]], Domain())) == 16
     with pytest.raises(Undecided, match="the constraints have more than 16 branches; split the claim"):
         on_manifold([s**2 - 1 for s in signs], Domain())
+
+
+NOT_KEPT = "Jacobi's energy is not conserved: forces act, or L depends on time; integrate instead"
+
+
+@pytest.mark.parametrize(
+    ("more", "forces", "weight", "said"),
+    [
+        (0, {theta: -k * theta.dot}, g, NOT_KEPT),
+        (-m * r * cos(theta) * sin(time), None, g + sin(time), NOT_KEPT),
+        (m * theta.dot**4, None, g, r"is not quadratic in theta_dot, so theta_dot² does not follow from it alone"),
+    ],
+    ids=["friction", "a moving field", "a fourth power"],
+)  # fmt: skip
+def test_without_an_energy_that_gives_the_speed_the_multiplier_is_known_in_contact_alone(
+    more, forces, weight, said
+):
+    free = hemisphere().lagrangian
+    held = ConstrainedLagrangian(Lagrangian(free.L + more, free.q, forces), holonomic=[r - a])
+    with pytest.raises(ValueError, match=said):
+        multiplier_along(held, {r: a}, theta, sp.S.Zero)
+    force = multiplier_in_contact(held, {r: a}, (theta,))
+    assert vanishes(force - (m * weight * cos(theta) - m * a * theta.dot**2)).holds
+    assert vanishes(force - (m * weight * cos(theta) + m * a * theta.dot**2)).fails
+
+
+def test_a_reaction_that_depends_on_an_ignorable_angle_is_known_in_contact_alone():
+    """A pull k (r − a) cos φ across the sphere: no force along it, λ = … + k cos φ."""
+    spin = parameters("spin", positive=True)
+    T = m * (r.dot**2 + r**2 * theta.dot**2 + r**2 * sin(theta) ** 2 * phi.dot**2) / 2
+
+    def sphere(pull):
+        L = Lagrangian(T - m * g * r * cos(theta) - pull * (r - a), [r, theta, phi])
+        return ConstrainedLagrangian(L, holonomic=[r - a])
+
+    start = {"others": {phi: spin}}
+    even = multiplier_along(sphere(k), {r: a}, theta, sp.pi / 2, **start)
+    assert vanishes(even - (3 * m * g * cos(theta) - m * a * spin**2 + k)).holds
+    assert vanishes(even - (3 * m * g * cos(theta) - m * a * spin**2 - k)).fails
+    with pytest.raises(ValueError, match="depends on phi; take multiplier_in_contact"):
+        multiplier_along(sphere(k * cos(phi)), {r: a}, theta, sp.pi / 2, **start)
+
+
+def test_a_constraint_in_pieces_is_taken_as_it_stands():
+    """A bend y = |x|: on each side the multipliers and accelerations are those of its straight line."""
+    bend = sp.Piecewise((y - x, x > 0), (y + x, True))
+    free = Lagrangian((x.dot**2 + y.dot**2) / 2 - g * y, [x, y])
+    pieced, *sides = (ConstrainedLagrangian(free, holonomic=[f]) for f in (bend, y - x, y + x))
+    for number, side in zip((1, -1), sides, strict=True):
+        here = [f.subs({x: number, y: 1}) for f in pieced.accelerations]
+        due = [f.subs({x: number, y: 1}) for f in side.accelerations]
+        assert here == due == [-number * g / 2, -g / 2]

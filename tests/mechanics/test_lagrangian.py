@@ -268,3 +268,9 @@ def test_coordinates_of_which_one_has_the_name_of_a_velocity():
     u, v = coordinates("x x_dot")
     with pytest.raises(ValueError, match="name of the velocity or acceleration of x,"):
         Lagrangian((u.dot**2 + v.dot**2) / 2, [u, v])
+
+
+def test_a_system_has_a_coordinate():
+    for none in ([], ()):
+        with pytest.raises(ValueError, match="no coordinates given; a system moves in at least one"):
+            Lagrangian(theta.dot**2 / 2, none)

@@ -237,3 +237,20 @@ def test_euler_equations_of_a_free_body():
 def test_refusals(make, words):
     with pytest.raises(ValueError, match=words):
         make()
+
+
+def test_a_torque_needs_the_axes_of_the_body_that_it_turns():
+    """J θ̈ = τ about the third axis, which turns in place; of a body given by ω the axes are not known."""
+    turned = sp.Matrix([[cos(theta), -sin(theta), 0], [sin(theta), cos(theta), 0], [0, 0, 1]])
+
+    def route(torque, **how):
+        body = RigidBody(m, (), (I1, I1, J), **how)
+        return NewtonEuler([body], [theta], [Load(0, torque=torque)])
+
+    about = route((0, 0, tau), rotation=turned).balances[-1]
+    assert vanishes(about - (J * theta.ddot - tau)).holds
+    assert vanishes(about - (J * theta.ddot + tau)).fails
+    spinning = (0, 0, theta.dot)
+    assert vanishes(route((0, 0, 0), omega=spinning).balances[-1] - J * theta.ddot).holds
+    with pytest.raises(ValueError, match="acts on a body given by omega; give its rotation"):
+        route((0, 0, tau), omega=spinning).balances  # noqa: B018

@@ -222,3 +222,40 @@ def test_frobenius_agrees_with_the_wedge_product(n):
     curl = [form[(k + 2) % 3].diff(z[(k + 1) % 3]) - form[(k + 1) % 3].diff(z[(k + 2) % 3]) for k in range(3)]
     wedge = sp.expand(sum(a * c for a, c in zip(map(sp.sympify, form), curl, strict=True)))
     assert found.holds if wedge == 0 else found.fails
+
+
+def free_with(q, *rates):
+    return ConstrainedLagrangian(Lagrangian(sum(s.dot**2 for s in q) / 2, q), nonholonomic=rates)
+
+
+@pytest.mark.parametrize(
+    ("q", "rates", "keeps"),
+    [
+        ((x,), [x.dot], [x]),
+        ((x, y), [x.dot - y.dot, y.dot - x * y.dot], [x, y]),
+        ((x, y, z), [x.dot - y.dot, z.dot + z * x * (x.dot - y.dot)], [x - y, z]),
+        ((x, y, z, theta), [x.dot - y.dot, x.dot - y.dot + z.dot - theta.dot], [x - y, z - theta]),
+        ((z, x, y), [x.dot * y - x * y.dot], [x / y]),
+        ((x, y), [x.dot * y**2 - x * y.dot], [sp.log(x) + 1 / y]),
+        ((x, y), [(x + y) * x.dot - y.dot], [(x + y + 1) * sp.exp(-x)]),
+    ],
+)
+def test_integrals_span_the_differentials_of_what_is_kept(q, rates, keeps):
+    """The second form of the third is closed by no factor, and its integral stands in a combination of both."""
+    found = integrals(free_with(q, *rates))
+    assert len(found) == len(keeps)
+
+    def rank(functions):
+        return sp.Matrix([[f.diff(s) for s in (*q, time)] for f in functions]).rank(simplify=True)
+
+    assert rank(found) == len(keeps)
+    assert rank([*found, *keeps]) == len(keeps)
+    assert rank([*found, q[-1] ** 2 * time]) == len(keeps) + 1
+
+
+def test_integrals_without_a_closed_form_that_is_looked_for_are_not_made_up():
+    """(x + y) e⁻ᵗ and (x − y) eᵗ are kept: both positions are restricted, though no function is returned."""
+    constrained = free_with((x, y), x.dot - y, y.dot - x)
+    assert is_integrable(constrained).holds
+    assert positional_freedom(constrained) == 0
+    assert integrals(constrained) == ()

@@ -296,3 +296,11 @@ def test_a_start_is_given_as_to_propagate():
         action_variables(oscillator, [1, 2, 3], {k: 9})
     with pytest.raises(ValueError, match=r"the state is \(q, p\), and r is none of them"):
         action_variables(oscillator, {"q": 1, "r": 2}, {k: 9})
+
+
+@pytest.mark.parametrize("place", [1, -1])
+def test_the_oscillator_starts_at_rest_at_either_end(place):
+    torus = action_variables(OSCILLATOR, {q: place, p: 0}, {m: 2, w: 3})
+    assert holds(torus.J[0], 3)
+    assert misses(torus.J[0], 3 + sp.Rational(1, 10**20))
+    assert [float(end) for end in torus.cycles[0].turning_points] == pytest.approx([-1, 1], abs=1e-15)

@@ -16,7 +16,7 @@ from canon.mechanics.integrable.classical_coordinates import NAMES, charts_for
 from canon.mechanics.integrable.complete_integral import hamilton_jacobi
 from canon.mechanics.integrable.function_splitting import product_parts, sum_parts
 from canon.mechanics.integrable.separability import is_separable
-from canon.mechanics.integrable.separated_momenta import NotSeparatedError
+from canon.mechanics.integrable.separated_momenta import NotSeparatedError, separated_momenta
 from canon.proof.domain.domain import EVERYWHERE, Domain
 from canon.proof.vanish import vanishes
 
@@ -284,3 +284,74 @@ def test_the_equation_and_the_determinant_have_half_of_the_budget_each(monkeypat
         monkeypatch.setattr(complete_integral, name, noting(getattr(complete_integral, name)))
     assert found.is_complete_integral(budget=8.0).holds
     assert budgets == [4.0, 4.0]
+
+
+def test_the_name_of_a_constant_is_none_of_those_that_stand_in_the_hamiltonian():
+    pull = sp.Symbol("alpha_x", real=True)
+    found = hamilton_jacobi(Hamiltonian((px**2 + py**2) / 2 + pull * y, [x, y], [px, py]))
+    constant, energy = found.constants
+    assert str(constant) == "alpha_x_"
+    assert found.is_complete_integral().holds
+    assert found.momenta[0].defined_as == px
+    assert sp.expand(found.momenta[1].square - (2 * energy - 2 * pull * y - constant**2)) == 0
+
+
+E = sp.Symbol("E", real=True)
+
+
+@pytest.mark.parametrize(
+    ("H", "left"),
+    [
+        (px**4 + x, "x"),
+        (px**4 + x + py, "x"),
+        (px**2 + y**2, "y"),
+        (HENON_HEILES.H, "x, y"),
+        (px**2 + x * y * px + py**2 + x * y, "x, y"),
+        (px**2 + sp.sin(x * y) * px + py**2, "x, y"),
+    ],
+    ids=[
+        "a fourth power",
+        "beside an ignorable one",
+        "no momentum",
+        "a potential",
+        "a product",
+        "a term of first degree",
+    ],
+)
+def test_momenta_that_are_no_functions_of_their_own_coordinate_are_not_found(H, left):
+    n = 2 if H.has(py) else 1
+    with pytest.raises(
+        NotSeparatedError, match=f"no separated equations were found for {left}; .* at most quadratic"
+    ):
+        separated_momenta(Hamiltonian(H, [x, y][:n], [px, py][:n]), E, EVERYWHERE)
+
+
+def test_terms_of_first_degree_are_shifts_where_they_belong_to_their_own_coordinate():
+    """(p_x + x)² + p_y² + y⁴: p_x = −x ± …, the twin of what does not separate."""
+    momenta, constants = separated_momenta(
+        Hamiltonian((px + x) ** 2 + py**2 + y**4, [x, y], [px, py]), E, EVERYWHERE
+    )
+    assert momenta[0].shift == -x
+    assert sp.expand(constants[0][1] - (px + x) ** 2) == 0
+    assert sp.expand(momenta[1].square - (E - constants[0][0] - y**4)) == 0
+
+
+def test_arcs_of_one_coordinate_leave_the_others_alone():
+    def separable(V):
+        return is_separable(Hamiltonian((px**2 + py**2) / 2 + V, [x, y], [px, py]))
+
+    assert separable(sp.asin(sp.sin(x)) + y**2).holds
+    assert separable(sp.acos(x / 4) + y**2).holds
+    assert separable(sp.asin(sp.sin(x + y))).undecided
+    assert separable(sp.acos((x + y) / 4)).fails
+
+
+def test_a_momentum_that_may_not_stand_in_the_hamiltonian_is_named():
+    """Li₂(x) + Li₂(1 − x) + log x log(1 − x) = π²/6 (Euler), which is not proved here, so p_y may be there or not."""
+    euler = sp.polylog(2, x) + sp.polylog(2, 1 - x) + sp.log(x) * sp.log(1 - x) - sp.pi**2 / 6
+    inside = Domain((x > 0, x < 1))
+    verdict = is_separable(Hamiltonian(px**2 + euler * py + y**2, [x, y], [px, py]), inside, budget=0.2)
+    assert verdict.undecided
+    assert verdict.feedback == "whether H depends on p_y was not decided"
+    without = is_separable(Hamiltonian(px**2 + y**2, [x, y], [px, py]), inside)
+    assert without.feedback == "y does not separate: H depends on y, and not on its momentum p_y"

@@ -11,6 +11,7 @@ from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.integrable.actions import action_variables, angles
 from canon.mechanics.integrable.closed_form.actions_in_closed_form import closed_actions
 from canon.mechanics.integrable.complete_integral import hamilton_jacobi
+from canon.mechanics.integrable.turning_points import NoCycleError
 from canon.proof.domain.balls import precision, value
 from canon.proof.domain.domain import Domain
 from canon.proof.vanish import vanishes
@@ -126,3 +127,39 @@ def test_central_powers_agree_with_another_quadrature(n, pull):
         due = mp.quad(momentum, mp.linspace(0, mp.pi, 5)) / mp.pi
         assert torus.J[0].overlaps(arb(mp.nstr(due, 25)) + arb(0, 1e-16))
         assert torus.J[0].rel_accuracy_bits() > 60
+
+
+def test_a_modulus_of_a_parameter_has_no_kink():
+    """V = |a| |q| is the wedge of the slope |a|."""
+    slope = sp.Symbol("a", real=True)
+    for number in (-2, 2):
+        torus = torus_of(sp.Abs(slope) * sp.Abs(q), values={slope: number})
+        assert holds(torus.J[0], by_beta(1, sp.Rational(9, 2), 2))
+        assert not holds(torus.J[0], by_beta(1, sp.Rational(9, 2), 1))
+
+
+@pytest.mark.parametrize(
+    ("V", "stiffness", "energy"),
+    [
+        (q**2 / 2 + sp.Abs(q - 10), 1, 5),
+        (2 * q**2 + sp.Abs(q**2 - 100), 2, sp.Rational(9, 2)),
+        (q**2 / 2 + sp.Abs(q**2 - 100) / 4, sp.Rational(1, 2), sp.Rational(9, 2)),
+    ],
+)
+def test_a_kink_beyond_the_turning_points_is_not_met(V, stiffness, energy):
+    """Within, the wells are (q − 1)²/2 + 19/2 and parabolas: J is the energy above the bottom over ω."""
+    torus = torus_of(V)
+    omega = sp.sqrt(stiffness)
+    assert holds(torus.frequencies[0], omega)
+    assert holds(torus.J[0], energy / omega)
+    assert not holds(torus.J[0], 2 * energy / omega)
+
+
+def test_two_kinks_that_are_not_told_apart_are_refused():
+    """√(3 + 2√2) = 1 + √2: one kink, written in two ways; as one it is a wedge of twice the slope."""
+    written = sp.sqrt(3 + 2 * sp.sqrt(2))
+    with pytest.raises(NoCycleError, match="two kinks of the potential of q are too near to each other"):
+        torus_of(sp.Abs(q - written) + sp.Abs(q - 1 - sp.sqrt(2)), 5)
+    integral = hamilton_jacobi(Hamiltonian(p**2 / 2 + 2 * sp.Abs(q - 1 - sp.sqrt(2)), q, p))
+    torus = action_variables(integral, {q: 1 + sp.sqrt(2), p: 3}, {}, digits=20)
+    assert holds(torus.J[0], by_beta(1, sp.Rational(9, 2), 2))
