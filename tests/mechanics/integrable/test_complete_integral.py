@@ -319,7 +319,7 @@ E = sp.Symbol("E", real=True)
     ],
 )
 def test_momenta_that_are_no_functions_of_their_own_coordinate_are_not_found(H, left):
-    n = 2 if H.has(py) else 1
+    n = 2 if H.has(y, py) else 1
     with pytest.raises(
         NotSeparatedError, match=f"no separated equations were found for {left}; .* at most quadratic"
     ):
