@@ -70,7 +70,8 @@ def _steps(u: Expr, first: float, last: float) -> Expr:
     count = abs(math.floor(highest) - math.floor(lowest))
     if count > MOST_STEPS:
         raise TypeError(
-            f"floor({u}) has {count} steps from t = {first:g} to {last:g}; {MOST_STEPS} are written out"
+            f"floor({u}) has {count} steps from t = {first:g} to {last:g}, of which {MOST_STEPS} are written out; "
+            "take a shorter span, and go on from its end"
         )
     begun = math.floor(min(lowest, highest))
     levels = range(begun + 1, math.ceil(max(lowest, highest)))  # a step at the very end is beyond

@@ -89,8 +89,8 @@ def field_of_function(f: Callable[[Any, Any], Any], n: int) -> VectorField:
 def _field(f: Callable[[Any, Any], Any], n: int, span: tuple[float, float] | None) -> VectorField:
     _refuse_other_arguments(f)
     variables = sp.symbols(f"y_:{n}", real=True, seq=True)
-    exchanged = with_exchanged_names(f)
     try:
+        exchanged = with_exchanged_names(f)
         rates = along_all_ways(lambda decisions: _rates(exchanged, variables, decisions), span)
     except (TypeError, AttributeError, IndexError, np.linalg.LinAlgError) as failed:
         raise TypeError(f"the function f(t, y) can't be read as formulas ({failed}): {_READABLE}") from failed

@@ -250,8 +250,10 @@ def _comparison(relation: Callable[..., Any]) -> Callable[[Any, Any], Any]:
             if math.isnan(b):
                 return relation is sp.Unequality
             return bool(relation(sp.S.Zero, sp.oo if b > 0 else -sp.oo))  # what moves is finite
+        left, right = expression(a), expression(b)
         long = getattr(a, "length", 1) + getattr(b, "length", 1) > _LONG
-        return _condition(relation(expression(a), expression(b), evaluate=not long), _of(a, b))
+        known = not long or (left.is_number and right.is_number)
+        return _condition(relation(left, right, evaluate=known), _of(a, b))
 
     return method
 
