@@ -63,3 +63,16 @@ def test_equations_are_solved_where_they_are_affine_in_the_accelerations(f):
         [(x.ddot + 1) ** 2 - x.ddot**2 - y, y.ddot], [], (x, y)
     )  # affine, though not as it is written
     assert sp.expand(found.through[x.ddot] - (y - 1) / 2) == 0
+
+
+def test_whether_a_combination_binds_the_state_may_not_be_decided():
+    """Li₂(x) + Li₂(1 − x) + log x log(1 − x) = π²/6 (Euler) is not proved here, and its double is not refuted."""
+    euler = sp.polylog(2, x) + sp.polylog(2, 1 - x) + sp.log(x) * sp.log(1 - x) - sp.pi**2 / 6
+    inside = Domain((x > 0, x < 1))
+    for f in (euler, 2 * euler):
+        with pytest.raises(
+            Undecided, match=r"whether the equations bind the state by .*polylog.* = 0 was not decided"
+        ):
+            motions([f, y.ddot - x], [], (x, y), domain=inside)
+    bound = motions([y, x.ddot - x], [], (x, y), domain=inside)
+    assert bound.through[y] == 0
