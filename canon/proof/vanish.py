@@ -327,7 +327,7 @@ def _climb(left: Expr, right: Expr, domain: Domain, deadline: float, names: tupl
         if without.fails:
             return without
     search = search_widely(left, right, domain, _share(SEARCH_SHARE, deadline))
-    if search.agreements == 0 and search.counterexample is None:
+    if search.agreements == 0 and search.counterexample is None and not search.unmodelled:
         search = search_branches(left, right, domain, _share(SEARCH_SHARE, deadline))
     if search.counterexample is not None:
         return _refuted(left, right, search)

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 from flint import fmpq
 
 from canon.expression.symbols.jacobi_functions import jacobi_cn, jacobi_dn, jacobi_sn
-from canon.proof.domain.limits import TooLarge
 from canon.proof.functions.angles import combination, cos_sin, divided
 from canon.proof.tower.tower import Fraction
 
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["elementary", "is_ordinary", "sn_cn_dn"]
 
 LARGEST_MULTIPLE = 12
-"""Multiples of an argument that are still written out."""
+"""Multiples of an argument that are still written out; of more the functions are kernels of their own."""
 
 
 def elementary(n: Forms, expr: sp.Basic) -> Fraction | None:
@@ -74,8 +73,6 @@ def _sum(n: Forms, first: Triple, second: Triple, m: Fraction) -> Triple:
 
 def _multiple(n: Forms, triple: Triple, k: int, m: Fraction) -> Triple:
     """Return the functions of a whole multiple of an argument from those of the argument."""
-    if abs(k) > LARGEST_MULTIPLE:
-        raise TooLarge(f"Jacobi's functions of more than {LARGEST_MULTIPLE} times an argument")
     total = (n.tower.number(0), n.tower.number(1), n.tower.number(1))
     for _ in range(abs(k)):
         total = _sum(n, total, triple, m)
@@ -89,7 +86,7 @@ def _special(n: Forms, atom: Fraction, r: fmpq, m: Fraction) -> Triple | None:
         return None
     if kernel == ("K", n.fraction_key(m)) and r.q in (1, 2):
         return _quarter_periods(n, int(r.p) * (2 // int(r.q)), m)
-    if kernel[0] == "F" and kernel[2] == n.fraction_key(m) and r.q == 1:
+    if kernel[0] == "F" and kernel[2] == n.fraction_key(m) and r.q == 1 and abs(r) <= LARGEST_MULTIPLE:
         phi = n.amplitudes[kernel][0]
         cosine, sine = cos_sin(n, phi)
         d = n.root(n.minus(t.number(1), t.times(m, sine, sine)), fmpq(1, 2))
@@ -114,7 +111,10 @@ def _quarter_periods(n: Forms, halves: int, m: Fraction) -> Triple:
 
 def _multiple_of_kernels(n: Forms, atom: Fraction, r: fmpq, m: Fraction) -> Triple:
     parts = divided(n, "jacobi", (n.fraction_key(atom), n.fraction_key(m)), r)
-    return _multiple(n, _kernels(n, n.scaled(fmpq(1, parts), atom), m), int((r * parts).p), m)
+    times, part = int((r * parts).p), fmpq(1, parts)
+    if abs(times) > LARGEST_MULTIPLE:
+        times, part = (1 if times > 0 else -1), abs(r)
+    return _multiple(n, _kernels(n, n.scaled(part, atom), m), times, m)
 
 
 def _kernels(n: Forms, u: Fraction, m: Fraction) -> Triple:
