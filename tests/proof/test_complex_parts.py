@@ -18,6 +18,7 @@ from sympy import (
     asinh,
     atan,
     atan2,
+    conjugate,
     cos,
     cosh,
     diff,
@@ -373,3 +374,38 @@ def test_the_sign_of_a_complex_number_is_not_its_direction_at_zero():
     assert equal(sign(x + I * y), (x + I * y) / sqrt(x**2 + y**2)).holds
     assert equal(sign(u) ** 2, 1).fails
     assert equal(sign(u) * Abs(u), u).holds
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "wrong"),
+    [
+        (conjugate(log(x)), log(x), -log(x)),
+        (conjugate(sqrt(-x)), -sqrt(-x), sqrt(-x)),
+        (conjugate(x + I * log(x)), x - I * log(x), x + I * log(x)),
+        (arg(1 / (x + I * y)), -atan2(y, x), atan2(y, x)),
+        (arg((x + I * y) ** 2 / (x - I * y)), arg((x + I * y) ** 3), arg((x - I * y) ** 3)),
+    ],
+    ids=str,
+)
+def test_conjugates_and_arguments_of_what_conditions_make_real_or_positive(left, right, wrong):
+    positive = Domain((x > 0,))
+    assert equal(left, right, positive).holds
+    assert equal(left, wrong, positive).fails
+    assert not equal(left, wrong).holds
+
+
+@pytest.mark.parametrize("f", [re, im, conjugate, arg, sign, Abs], ids=lambda f: f.__name__)
+def test_of_a_complex_number_written_in_two_ways_the_parts_are_equal(f):
+    one = sin(x) ** 2 + cos(x) ** 2
+    assert equal(f(u * (u + one)), f(u**2 + u)).holds
+    assert not equal(f(u * (u + one)), f(u**2 - u)).holds
+
+
+def test_logarithms_of_algebraic_numbers_that_are_no_roots_of_real_ones():
+    assert equal(log(3 + 4 * I), 2 * log(2 + I)).holds
+    assert equal(log(3 + 4 * I), 2 * log(2 - I)).fails
+    assert equal(arg(-3 + 4 * I), 2 * arg(1 + 2 * I)).holds
+    assert equal(arg(-3 - 4 * I), 2 * arg(-1 + 2 * I)).fails
+    long = sqrt(2) + sqrt(3) + sqrt(5) + sqrt(7) + sqrt(11)
+    assert equal(log(long**2), 2 * log(long)).holds
+    assert equal(log(long**2), 2 * log(long - sqrt(11))).fails

@@ -19,7 +19,7 @@ from canon.expression.symbols.jacobi_functions import (
 )
 from canon.proof.domain.balls import precision, value
 from canon.proof.domain.domain import EVERYWHERE, Domain
-from canon.proof.domain.theta_quotients import sn_cn_dn
+from canon.proof.domain.theta_quotients import amplitude, epsilon, sn_cn_dn
 from canon.proof.vanish import vanishes
 
 u, v, m = sp.symbols("u v m", real=True)
@@ -155,3 +155,82 @@ def test_a_pole_at_an_imaginary_argument_has_no_value():
     """sn has its pole at i K(1 − m), where zero times it is not zero."""
     pole = sp.I * sp.elliptic_k(1 - m)
     assert not vanishes(sp.Mul(0, jacobi_sn(pole, m), evaluate=False), Domain((m > 0, m < 1))).holds
+
+
+NOUGHT = (k + 1) ** 2 - k**2 - 2 * k - 1
+"""Zero once it is multiplied out, which SymPy does not do when it takes a function of it."""
+
+DEGENERATE = [
+    (sp.elliptic_k(NOUGHT), sp.pi / 2, sp.pi, ()),
+    (F(u, NOUGHT), u, 2 * u, ()),
+    (jacobi_am(u, NOUGHT), u, -u, ()),
+    (jacobi_sn(u, NOUGHT), sp.sin(u), sp.cos(u), ()),
+    (jacobi_cn(u, NOUGHT), sp.cos(u), -sp.cos(u), ()),
+    (Third(NOUGHT, m), K, 2 * K, (m < 1,)),
+    (Third(NOUGHT, u, m), F(u, m), F(2 * u, m), (m < 1,)),
+]
+
+
+@pytest.mark.parametrize(("left", "right", "wrong", "domain"), DEGENERATE)
+def test_parameters_and_characteristics_that_turn_out_to_be_zero(left, right, wrong, domain):
+    assert vanishes(left - right, Domain(domain)).holds
+    assert vanishes(left - wrong, Domain(domain)).fails
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "wrong"),
+    [
+        (jacobi_am(2 * K, m), sp.pi, sp.pi / 2),
+        (jacobi_am(3 * K, m), 3 * sp.pi / 2, -sp.pi / 2),
+        (jacobi_am(-K, m), -sp.pi / 2, sp.pi / 2),
+        (F(sp.asin(v) + sp.acos(v), m), K, -K),
+        (F(2 * sp.asin(v) + 2 * sp.acos(v), m), 2 * K, K),
+        (F(-3 * sp.asin(v) - 3 * sp.acos(v), m), -3 * K, 3 * K),
+        (Legendre(sp.asin(v) + sp.acos(v), m), Legendre(m), K),
+    ],
+)
+def test_arcs_and_amplitudes_of_whole_quarter_periods(left, right, wrong):
+    inside = Domain((m < 1, v > -1, v < 1))
+    assert vanishes(left - right, inside).holds
+    assert vanishes(left - wrong, inside).fails
+
+
+@pytest.mark.parametrize("f", [lambda z: F(z, m), lambda z: Third(z, m), lambda z: Third(z, u, m)])
+def test_of_parameters_that_may_be_anything_only_equal_arguments_are_equal(f):
+    assert vanishes(f(v * (v + 1)) - f(v**2 + v)).holds
+    assert vanishes(f(v * (v + 1)) - f(v**2 - v)).fails
+
+
+@pytest.mark.parametrize("argument", [13 * u, -25 * u / 2, 14 * F(u, m), u + 13 * v])
+def test_many_times_an_argument_is_an_argument_of_its_own(argument):
+    """What is known of m makes nothing less decided."""
+    circle = jacobi_sn(argument, m) ** 2 + jacobi_cn(argument, m) ** 2
+    for domain in (EVERYWHERE, BELOW_ONE):
+        assert vanishes(circle - 1, domain).holds
+        assert vanishes(circle - 2, domain).fails
+
+
+def test_many_times_an_argument_forwards_and_backwards():
+    there, back = jacobi_sn(v - 13 * u, m), jacobi_sn(13 * u - v, m)
+    assert vanishes(there + back, BELOW_ONE).holds
+    assert vanishes(there - back, BELOW_ONE).fails
+
+
+def test_at_the_parameter_one_elliptic_functions_are_hyperbolic():
+    with precision(120), mp.workprec(150):
+        due = (mp.tanh(2), mp.sech(2), mp.sech(2))
+        for ball, right in zip(sn_cn_dn(acb(2), acb(1)), due, strict=True):
+            assert ball.overlaps(acb(str(right)))
+            assert ball.rel_accuracy_bits() > 100
+
+
+def test_amplitudes_have_values_at_real_arguments_that_are_narrowly_known():
+    parameter = acb("0.3")
+    narrow = acb(arb(7, 1e-20))
+    for f, due in ((amplitude, jacobi_am), (epsilon, jacobi_epsilon)):
+        with precision(120):
+            right = arb(str(due(sp.Integer(7), sp.Rational(3, 10)).n(30)))
+            assert f(narrow, parameter).real.overlaps(right + arb(0, 1e-18))
+            assert not f(narrow, parameter).real.overlaps(right + arb(1) / 10**9)
+            for unknown in (acb(7, 1), acb(arb(0, 1000)), acb("inf")):
+                assert not f(unknown, parameter).is_finite()

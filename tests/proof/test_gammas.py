@@ -3,6 +3,7 @@
 import pytest
 from sympy import (
     E,
+    FallingFactorial,
     LambertW,
     Rational,
     RisingFactorial,
@@ -18,8 +19,10 @@ from sympy import (
     gamma,
     log,
     loggamma,
+    lucas,
     pi,
     sin,
+    sqrt,
     symbols,
 )
 
@@ -29,6 +32,7 @@ x, y = symbols("x y", real=True)
 p, q = symbols("p q", positive=True)
 n, k = symbols("n k", integer=True)
 N = symbols("N", integer=True, positive=True)
+ONE = sin(x) ** 2 + cos(x) ** 2
 
 TRUE = [
     (gamma(x + 1), x * gamma(x), Domain(), gamma(x)),
@@ -96,6 +100,32 @@ TRUE = [
     (LambertW(-log(2) / 2, -1), -2 * log(2), Domain(), -log(2)),
     (gamma(x + 1).diff(x), gamma(x) + x * gamma(x).diff(x), Domain((x > 0,)), gamma(x)),
     (erfc(x), 1 - erf(x), Domain(), 1 + erf(x)),
+    (
+        FallingFactorial(p, n),
+        gamma(p + 1) / gamma(p - n + 1),
+        Domain((n >= 0, n < p)),
+        gamma(p + 1) / gamma(p + n + 1),
+    ),
+    (
+        FallingFactorial(p, n + 1),
+        (p - n) * FallingFactorial(p, n),
+        Domain((n >= 0, n + 1 < p)),
+        (p + n) * FallingFactorial(p, n),
+    ),
+    (gamma(1 + 4 * ONE), 24, Domain(), 120),
+    (gamma(ONE / 2), sqrt(pi), Domain(), pi),
+    (
+        gamma(x) * gamma(3 - x),
+        (2 - x) * gamma(x) * gamma(2 - x),
+        Domain(),
+        (1 - x) * gamma(x) * gamma(2 - x),
+    ),
+    (
+        digamma(p + 1) + digamma(q + 1),
+        digamma(p) + digamma(q) + 1 / p + 1 / q,
+        Domain(),
+        digamma(p) + digamma(q) + 1 / p - 1 / q,
+    ),
 ]
 
 
@@ -110,6 +140,21 @@ def test_products_and_fibonacci_numbers():
     assert equal(RisingFactorial(p, n), gamma(p + n) / gamma(p + 1), Domain((n >= 0,))).fails
     assert equal(fibonacci(n + 2), fibonacci(n + 1) + fibonacci(n)).holds
     assert not equal(fibonacci(n + 2), fibonacci(n + 1) - fibonacci(n)).holds
+
+
+def test_lucas_numbers_follow_the_rule_of_fibonaccis():
+    assert equal(lucas(n + 2), lucas(n + 1) + lucas(n)).holds
+    assert equal(lucas(n), fibonacci(n - 1) + fibonacci(n + 1)).holds
+    for wrong in (lucas(n + 1) - lucas(n), fibonacci(n + 2) + fibonacci(n)):
+        verdict = equal(lucas(n + 2), wrong)
+        assert not verdict.holds
+        assert "lucas is not modelled" in str(verdict)
+
+
+@pytest.mark.parametrize("f", [lambda a: RisingFactorial(a, n), lambda a: beta(a, y), lambda a: beta(y, a)])
+def test_of_arguments_of_any_sign_only_equal_ones_are_known_to_give_the_same(f):
+    assert equal(f(x * (x + 1)), f(x**2 + x)).holds
+    assert equal(f(x * (x + 1)), f(x**2 - x)).fails
 
 
 def test_reflection_needs_arguments_that_leave_no_whole_number():

@@ -31,6 +31,7 @@ from canon.proof.tower.tower import LARGEST_POWER, Tower
 from canon.proof.trees.replacement import LARGEST_WRITTEN, NoValue, replaced
 
 x, y = symbols("x y", real=True)
+w = symbols("w", complex=True)
 
 TRUE = [
     ((x + 1) ** 250 * (x - 1) ** 250, (x**2 - 1) ** 250, Domain(), (x**2 + 1) ** 250),
@@ -62,6 +63,21 @@ TRUE = [
     ),
     (exp(I * x) ** 300, cos(300 * x) + I * sin(300 * x), Domain(), cos(300 * x)),
     (cos(2 * x) ** 250, (cos(x) ** 2 - sin(x) ** 2) ** 250, Domain(), (cos(x) ** 2 + sin(x) ** 2) ** 250),
+    (y + ((x + 1) ** 2 - x**2 - 2 * x - 1) ** 201, y, Domain(), -y),
+    ((2 * x + 6) ** 250, 2**250 * (x + 3) ** 250, Domain(), 2**249 * (x + 3) ** 250),
+    ((-2 * x - 6) ** 251, -(2**251) * (x + 3) ** 251, Domain(), 2**251 * (x + 3) ** 251),
+    (
+        (x**2 + y**2 + 1) ** 301 * (x**2 - y**2 - 1) ** 301,
+        (x**4 - (y**2 + 1) ** 2) ** 301,
+        Domain(),
+        (x**4 + (y**2 + 1) ** 2) ** 301,
+    ),
+    (
+        (w + x + y) ** 301 * (w - x - y) ** 301,
+        (w**2 - (x + y) ** 2) ** 301,
+        Domain(),
+        (w**2 + (x + y) ** 2) ** 301,
+    ),
 ]
 
 
