@@ -132,12 +132,12 @@ def _with_names(expr: Expr) -> tuple[Expr, dict[sp.Basic, sp.Basic]]:
 def _by_conjugates(n: NormalForm, f: Fraction) -> Iterator[Expr]:
     """Yield (A² − B²R)/(A − Bρ) for each square root ρ of a fraction A + Bρ."""
     t, below = n.tower, n.expression(n.denominator(f))
-    for k in reversed(t.used(f.num)):
+    above = t.reduce(f.num)
+    for k in reversed(t.used(above)):
         relation = t.relation(k)
         if relation is None or relation[0] != 2:
             continue
-        a, b = (*t.coefficients(f.num, k), t.constant(0))[:2]
+        a, b = t.coefficients(above, k)
         norm = t.reduce(t.product(a, a) - t.product(t.product(b, b), relation[1]))
         conjugate = a - t.product(b, t.monomial(k))
-        if not conjugate.is_zero():
-            yield n.expression(norm) / (n.expression(conjugate) * below)
+        yield n.expression(norm) / (n.expression(conjugate) * below)
