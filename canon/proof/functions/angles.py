@@ -329,12 +329,9 @@ def _cosine_in_field(n: Forms, k: int, order: int) -> Fraction:
         for e, coefficient in enumerate(coefficients[:-1]):
             power = power - t.constant(coefficient) * c.num**e
         t.relate(t.generator(kernel), degree, power)
-    before, now = t.number(2), c
-    k = min(k % (2 * order), -k % (2 * order))
-    if k == 0:
-        return t.number(1)
-    for _ in range(k - 1):
-        before, now = now, n.minus(t.times(c, now), before)
+    now, following = t.number(2), c
+    for _ in range(min(k % (2 * order), -k % (2 * order))):
+        now, following = following, n.minus(t.times(c, following), now)
     return n.scaled(fmpq(1, 2), now)
 
 

@@ -44,9 +44,7 @@ def power(n: Forms, f: Fraction, exponent: int) -> Fraction:
     if f.num.is_zero():
         return f
     content, factors = t.factors(f.num)
-    parts = [(p, e) for p, e in factors if not p.is_constant()] + [(t.base(i), -e) for i, e in f.den]
-    for p, e in factors:
-        content = content * p.leading_coefficient() ** e if p.is_constant() else content
+    parts = factors + [(t.base(i), -e) for i, e in f.den]
     total = t.number(-1 if content < 0 and exponent % 2 else 1)
     for prime, e in primes(abs(content)):
         total = t.times(total, _signed(n, t.constant(prime), e * exponent))

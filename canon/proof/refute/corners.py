@@ -225,8 +225,6 @@ def _peeled(f: Expr, s: Symbol) -> Iterator[Expr]:
     """Yield u − c where f = 0 says h(u) = b for an elementary function h."""
     rest, outer = f.as_independent(s, as_Add=True)
     scale, function = outer.as_independent(s, as_Add=False)
-    if not function.args:
-        return
     b, u = -rest / scale, arguments(function)[0]
     match function:
         case sp.sin() | sp.cos():

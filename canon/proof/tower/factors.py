@@ -39,9 +39,6 @@ def split_signs(n: Forms, f: Fraction) -> tuple[fmpq, list[tuple[Fraction, int]]
     outside: list[tuple[Fraction, int]] = []
     rest = t.number(1)
     for p, e in factors:
-        if p.is_constant():
-            content = content * p.leading_coefficient() ** e
-            continue
         known = n.signs.of(p)
         if known.endswith("+"):
             outside.append((Fraction(p), e))

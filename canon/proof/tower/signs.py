@@ -203,16 +203,13 @@ class Signs:
         return ("" if strict else "0") + ("+" if positive else "-")
 
     def _by_facts(self, p: fmpq_mpoly, steps: int) -> str:
-        """p ≥ 0 where p minus nonnegative multiples of known facts is so.
+        """p ≥ 0 where p minus nonnegative multiples of known facts is so; the terms of p do not show its sign.
 
         Each step cancels the first term of p that may be negative, by a fact times a positive number and
         a monomial that is not negative; half of the number is tried too.
         """
         terms = self.tower.terms(p)
-        open_ = ((m, c) for m, c in terms if not self._of_term(m, positive=c > 0).endswith("+"))
-        bad, ratio = next(open_, ((), None))
-        if ratio is None:
-            return ""
+        bad, ratio = next((m, c) for m, c in terms if not self._of_term(m, positive=c > 0).endswith("+"))
         for known, strict, multiple, coefficient in self._cancelling(bad, positive=ratio > 0):
             sign = self._of_term(multiple, positive=True)
             if not sign.endswith("+"):

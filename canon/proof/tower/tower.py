@@ -210,15 +210,6 @@ class Tower:
         self.check_time()
         return p.resultant(q, f"g{generator}")
 
-    def substitute(self, p: fmpq_mpoly, generator: int, q: fmpq_mpoly) -> fmpq_mpoly:
-        """Put the polynomial ``q`` for a generator and reduce."""
-        total, power = self.constant(0), self.constant(1)
-        for k, coefficient in enumerate(self.coefficients(p, generator)):
-            if k:
-                power = self.product(power, q)
-            total = total + self.product(coefficient, power)
-        return total
-
     def check_time(self) -> None:
         """Raise :class:`OutOfTime` when the deadline has passed."""
         if time.monotonic() > self.deadline:
@@ -229,13 +220,6 @@ class Tower:
     def number(self, value: Any) -> Fraction:
         """Return a rational number as a fraction."""
         return Fraction(self.constant(value))
-
-    def symbol(self, kernel: Hashable, power: int = 1) -> Fraction:
-        """Return a power of the generator for ``kernel`` as a fraction."""
-        index = self.generator(kernel)
-        if power >= 0:
-            return Fraction(self.reduce(self.monomial(index, power)))
-        return self.reciprocal(Fraction(self.monomial(index, -power)))
 
     def base(self, i: int) -> fmpq_mpoly:
         """Return denominator base ``i``."""
