@@ -1,11 +1,14 @@
 """Differences below what any ball of their terms resolves are refuted in another form of theirs, and zero is not."""
 
+import time
+
 import pytest
-from sympy import Abs, Piecewise, cos, exp, log, sin, sqrt, symbols
+from sympy import Abs, Eq, Piecewise, cos, exp, log, sin, sqrt, symbols
 
 from canon.exercise.claim_verdict import judge
 from canon.exercise.sheet.sheet import Claim
 from canon.proof import Domain, equal, vanishes
+from canon.proof.refute.tiny_values import other_forms
 
 x, y = symbols("x y", real=True)
 a, b = symbols("a b", positive=True)
@@ -61,3 +64,14 @@ def test_pieces_and_branches_are_judged_on_their_own_side(f):
 def test_a_tiny_term_beside_the_energy(I, status):
     keys = {"I": I, "q": ["q"], "p": ["p"], "H": "(p**2 + q**2)/2"}
     assert judge(Claim("a", "constant-of-motion", keys)).status.value == status
+
+
+@pytest.mark.parametrize("f", [x**2 + x, x**2 + x * sin(a), x**3 + x * sqrt(a), sqrt(x**2 + a) + x], ids=str)
+def test_each_other_form_has_the_value_of_the_expression_on_the_domain(f):
+    """An equality makes x a root of 2y; x² and x, put together before that was known, were taken apart wrongly."""
+    domain = Domain((y > 0, Eq(x**2, 2 * y)))
+    forms = list(other_forms(f, domain, time.monotonic() + 10))
+    for form in forms:
+        for place in ({x: 2, y: 2, a: 3}, {x: -4, y: 8, a: 1}):
+            assert abs((form - f).subs(place).evalf(30)) < 1e-25
+    assert len(forms) > 1
