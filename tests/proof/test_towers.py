@@ -3,7 +3,7 @@
 import pytest
 import sympy as sp
 from flint import arb, fmpq
-from sympy import Abs, Eq, Function, Poly, cos, exp, sin, sqrt
+from sympy import Abs, Eq, Function, Poly, cos, exp
 
 from canon.proof import Domain, equal, vanishes
 from canon.proof.domain.balls import precision
@@ -106,11 +106,14 @@ def test_every_entry_is_reduced_by_all_equalities_together():
     assert vanishes(sp.Matrix([area, area * x, y * area + x]), circle).fails
 
 
-def test_long_and_many_conditions_give_signs_all_the_same():
+def test_long_conditions_give_signs():
     long = many(12)
     two = Domain((long > 0, long + x > 0))
     assert equal(Abs(long + x), long + x, two).holds
     assert equal(Abs(long - x), long - x, two).fails
+
+
+def test_of_many_conditions_beside_many_waves_each_gives_a_sign():
     names, angles = sp.symbols("a1:10", real=True), sp.symbols("b1:10", real=True)
     several = Domain(tuple(a + y**2 > 0 for a in names))
     waves = sp.Add(*map(cos, angles))
