@@ -4,9 +4,9 @@ import time
 
 import pytest
 import sympy as sp
-from sympy import Abs, Eq, Max, Piecewise, Poly, cos, exp, log, pi, sin, sqrt, tanh
+from sympy import Abs, Eq, Max, Piecewise, cos, exp, log, pi, sin, sqrt
 
-from canon.proof import Domain, equal, vanishes
+from canon.proof import Domain, equal
 from canon.proof.analytic import is_analytic, proved_sign
 from canon.proof.domain.domain import EVERYWHERE
 from canon.proof.refute.tiny_values import other_forms
@@ -28,7 +28,10 @@ def prove(expr, *conditions, seconds=10.0):
     ("reason", "said"),
     [
         (OverflowError("int too large to convert to float"), "a number is too large to be computed with"),
-        (ValueError("Exceeds the limit for integer string conversion"), "a number is too large to be computed with"),
+        (
+            ValueError("Exceeds the limit for integer string conversion"),
+            "a number is too large to be computed with",
+        ),
         (ZeroDivisionError("fmpq"), "a denominator vanishes"),
         (TypeError("invalid comparison of complex I.\nmore"), "invalid comparison of complex I"),
         (NotImplementedError(), "it has no meaning there"),
@@ -47,11 +50,11 @@ def test_what_was_not_reached_in_time_is_said_to_be_so():
     assert [attempt.holds for attempt in early] == [False, True]
 
 
-@pytest.mark.parametrize("many", [2, 8])
+@pytest.mark.parametrize("many", [2, 5])
 def test_a_claim_is_cut_into_no_more_cases_than_are_meant(many):
     names = sp.symbols(f"s1:{many + 1}", real=True)
-    larger = sp.Add(*(Max(s, 1) * (2 + sin(s * names[0])) for s in names))
-    plain = sp.Add(*((s + 1 + Abs(s - 1)) / 2 * (2 + sin(s * names[0])) for s in names))
+    larger = sp.Add(*(Max(s, 1) for s in names))
+    plain = sp.Add(*((s + 1 + Abs(s - 1)) / 2 for s in names))
     attempt = prove(larger - plain)
     assert attempt.holds is (many == 2)
     assert (f"more than {MOST_CASES} cases" in attempt.obstacles) is (many > 2)
@@ -114,13 +117,17 @@ def test_the_largest_of_functions_that_grow():
     assert equal(Max(exp(x), exp(-x)), exp(x), positive).holds
     assert equal(Max(exp(sqrt(x)), exp(sqrt(x) - 1)), exp(sqrt(x)), positive).holds
     assert equal(Max(exp(sqrt(x)), exp(sqrt(x) - 1)), exp(sqrt(x) - 1), positive).fails
+    both = Domain((x > 0, y > 0))
+    larger = Max(exp(sqrt(x)), exp(sqrt(x) + y))
+    assert not equal(larger, exp(sqrt(x) + y), both, budget=0.5).fails
+    assert equal(larger, exp(sqrt(x)), both, budget=0.5).fails
 
 
 def test_pieces_that_never_apply_are_no_cases():
-    never = Piecewise((x, x > 0), (y, (x > 0) & (y > 0)), (z, True))
-    assert [case.expr for case in cases(never, EVERYWHERE)] == [x, z]
-    assert equal(never, Piecewise((x, x > 0), (z, True))).holds
-    assert equal(never, Piecewise((x, x > 0), (y, y > 0), (z, True))).fails
+    never = Piecewise((x, (x > 0) | (y > 0)), (y, x > 0), (z, True))
+    assert y not in [case.expr for case in cases(never, EVERYWHERE)]
+    assert equal(never, Piecewise((x, (x > 0) | (y > 0)), (z, True))).holds
+    assert equal(never, Piecewise((x, y > 0), (y, x > 0), (z, True))).fails
 
 
 def test_an_equality_with_a_factor_that_may_vanish_is_cut_by_it():
@@ -133,13 +140,18 @@ def test_a_slope_that_is_zero_in_disguise_is_not_divided_by():
     nought = (sqrt(2) + sqrt(3)) ** 2 - 5 - 2 * sqrt(6)
     domain = Domain((Eq(nought * x + y, 1),))
     assert [s for s, _, _ in eliminations(domain, set())] == [y]
-    assert equal(y**2, 1, domain).holds
-    assert equal(y**2, 2, domain).fails
+    assert prove(y**2 - 1, *domain.conditions).holds
+    assert not prove(y**2 - 2, *domain.conditions).holds
 
 
 @pytest.mark.parametrize(
     ("assumed", "right"),
-    [({"negative": True}, -x), ({"positive": True}, x), ({"nonpositive": True}, -x), ({"nonnegative": True}, x)],
+    [
+        ({"negative": True}, -x),
+        ({"positive": True}, x),
+        ({"nonpositive": True}, -x),
+        ({"nonnegative": True}, x),
+    ],
 )
 def test_what_a_removed_symbol_was_declared_to_be_is_kept(assumed, right):
     bound = Domain((Eq(sp.Symbol("b", **assumed), x),))
@@ -151,13 +163,13 @@ def test_what_a_removed_symbol_was_declared_to_be_is_kept(assumed, right):
 def test_what_begins_anew_too_often_is_left_open(most, monkeypatch):
     for room in ("analytic", "rungs.ladder", "refute.tiny_values"):
         monkeypatch.setattr(f"canon.proof.{room}.MOST_STARTS", most)
-    halves = sin(x) - 2 * sin(x / 2) * cos(x / 2)
+    halves = sin(5 * x / 6) - sin(x / 2) * cos(x / 3) - cos(x / 2) * sin(x / 3)
     attempt = prove(halves)
     assert attempt.holds is (most > 1)
     assert ("arguments without a common part" in attempt.obstacles) is (most == 1)
     together = prove_each([halves, halves * y], EVERYWHERE, time.monotonic() + 10)
     assert all(each.holds is (most > 1) for each in together)
-    assert proved_sign(2 + sin(x) - 2 * sin(x / 2) * cos(x / 2), EVERYWHERE) == ("+" if most > 1 else "")
+    assert proved_sign(2 + halves, EVERYWHERE) == ("+" if most > 1 else "")
     assert bool(list(other_forms(halves + x, EVERYWHERE, time.monotonic() + 10))) is (most > 1)
 
 
