@@ -78,8 +78,7 @@ class SideBySide:
 
     def _padded(self, array: Array, rest: Sequence[Any]) -> Array:
         whole = np.full(self.shape[1:], np.nan)
-        if array.ndim or array.shape == whole.shape:
-            whole[tuple(map(slice, array.shape))] = array
+        whole[tuple(map(slice, array.shape))] = array
         for axis in reversed(range(len(rest))):  # from the last, since a number takes its axis away
             whole = whole[(slice(None),) * axis + (rest[axis],)]
         return whole
