@@ -109,7 +109,7 @@ def test_a_walk_beyond_round_off_is_said_to_wander():
     for found_, said in (
         (replace(still, verdict=Growth.WANDERING, walk=2e-9), "wandering (2e-09 in all)"),
         (replace(still, verdict=Growth.ROUND_OFF, walk=2e-15), "round-off (2e-15 in all)"),
-        (still, "bounded (drift < 0e+00)"),
+        (still, "bounded (drift < "),
     ):
         row = DriftRow(RK4(), 0.1, times, np.zeros(512), drift=found_)
         study = SimpleNamespace(
