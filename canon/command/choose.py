@@ -76,7 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
         _print_lines(choice)
     else:
         print(choice)
-        if choice.reached and arguments.observable == "energy":
+        if choice.reached and arguments.observable == "energy" and _is_long_enough(choice):
             print(f"\nto run it: {_command(choice, arguments)}")
     return 0 if choice.reached else 1
 
@@ -96,6 +96,13 @@ def _choice(scene: Scene, arguments: argparse.Namespace) -> Choice:
             methods=methods_given(arguments),
             progress=lambda _, done: progress("pilot runs", done),
         )
+
+
+def _is_long_enough(choice: Choice) -> bool:
+    """Tell whether a run has the steps from which ``canon drift`` judges how an error grows."""
+    from canon.study.energy_drift.drift import FEWEST
+
+    return choice.step is None or choice.span >= FEWEST * choice.step
 
 
 def _command(choice: Choice, arguments: argparse.Namespace) -> str:
