@@ -11,9 +11,11 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
+from canon.process import Child
 from canon.proof import vanishes
 from canon.proof.domain.domain import EVERYWHERE
-from canon.proof.worker.budget import prove_in_worker
+from canon.proof.worker import budget as budget_
+from canon.proof.worker.budget import prove_in_worker, seconds_in_worker
 
 x, y, z, t, u, v = sp.symbols("x y z t u v", real=True)
 
@@ -101,3 +103,25 @@ def test_interrupt_gets_through(processor_seconds):
 
 def _environment():
     return {**os.environ, "PYTHONPATH": os.pathsep.join(entry or str(Path.cwd()) for entry in sys.path)}
+
+
+OPEN = sp.Matrix([sp.besselj(0, x) - sp.besselj(1, x), sp.besselj(0, y) - sp.besselj(1, y)])
+
+
+def test_a_proof_waits_for_that_of_another_thread_no_longer_than_it_may():
+    worker = budget_._worker(os.getpid())
+    with worker._lock:
+        said = prove_in_worker([x - x], EVERYWHERE, 0.1)
+        assert said == "another thread's proof took the 0.1 s"
+        verdict = vanishes(OPEN, budget=0.3)
+        assert verdict.undecided
+        assert "besselj is not modelled" in str(verdict)
+    assert prove_in_worker([x - x], EVERYWHERE, 20.0)[0].holds
+
+
+def test_where_no_system_tells_the_seconds_of_a_process_those_of_waiting_count(monkeypatch):
+    prove_in_worker([x - x], EVERYWHERE, 20.0)
+    monkeypatch.setattr(Child, "processor_seconds", None)
+    before = seconds_in_worker()
+    assert prove_in_worker([sp.sin(x) ** 2 + sp.cos(x) ** 2 - 1], EVERYWHERE, 20.0)[0].holds
+    assert seconds_in_worker() > before

@@ -138,3 +138,10 @@ def test_a_root_that_is_not_real_refutes_nothing() -> None:
     domains = Domain((Eq(a**2 + sp.I * a * b, 1),)), Domain((Eq(a**2 + a * b, 1),))
     found = [search_branches(b, sp.Integer(0), domain, time.monotonic() + 10) for domain in domains]
     assert [search.counterexample is None for search in found] == [True, False]
+
+
+def test_numbers_at_which_an_equation_has_no_value_are_no_solution_of_it():
+    equation = 1 / a + 1 / b**3 - 2
+    assert rational_solution([equation], {a: sp.Integer(0), b: sp.Integer(0)}, random.Random(1)) is None
+    one = {a: sp.Integer(1), b: sp.Integer(1)}
+    assert rational_solution([equation], one, random.Random(1)) == one
