@@ -85,3 +85,11 @@ def test_the_standard_librarys_property_has_a_lock_in_python_3_11_only():
     import functools
 
     assert hasattr(functools.cached_property(lambda _: 1), "lock") == (sys.version_info < (3, 12))
+
+
+def test_who_asks_while_it_is_known_gets_what_is_known() -> None:
+    """As a thread does that began to ask before another had computed it."""
+    slow = Slow(ready())
+    slow.ready.set()
+    assert [Slow.value.__get__(slow, Slow) for _ in range(3)] == [7, 7, 7]
+    assert slow.computed == 1

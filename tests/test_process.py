@@ -17,8 +17,8 @@ from pathlib import Path
 import pytest
 
 from canon.cli import main
-from canon.process import Child, Ended, Late, _limit_memory, _read, _write
-from canon.trusted_folders import RESTS_ON, trusted_folders
+from canon.process import Child, Ended, Late, _limit_memory, _read, _write, end_with_parent
+from canon.trusted_folders import RESTS_ON, safe_path, trusted_folders
 
 ROOT = Path(__file__).parents[1]
 TRAP = "import pathlib; pathlib.Path({marker!r}).open('a').write({name!r})\nraise SystemExit('owned')\n"
@@ -356,3 +356,29 @@ def test_small_matrices_take_one_thread_unless_someone_says_otherwise(given, mon
     main(["scene"])
     assert os.environ.pop("OPENBLAS_NUM_THREADS") == (given or "1")
     assert "kepler" in capsys.readouterr().out
+
+
+def test_a_process_of_no_pool_goes_on_and_leaves_interrupts_to_others():
+    before = signal.getsignal(signal.SIGINT)
+    try:
+        end_with_parent()
+        assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def test_what_is_no_package_with_a_folder_is_not_looked_for_in_one(monkeypatch):
+    folders = trusted_folders()
+    monkeypatch.setattr("canon.trusted_folders.RESTS_ON", (*RESTS_ON, "sys", "no_such_package_anywhere"))
+    assert trusted_folders() == folders
+
+
+@pytest.mark.parametrize("before", ["0", "1", None])
+def test_the_path_of_other_interpreters_is_put_back(before, monkeypatch):
+    if before is None:
+        monkeypatch.delenv("PYTHONSAFEPATH", raising=False)
+    else:
+        monkeypatch.setenv("PYTHONSAFEPATH", before)
+    with safe_path():
+        assert os.environ["PYTHONSAFEPATH"] == "1"
+    assert os.environ.get("PYTHONSAFEPATH") == before

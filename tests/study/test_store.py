@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from canon.study.cases.store import Record, Store, StoreError
+from canon.study.cases.store_tables import _add_tags_table
 
 
 @pytest.fixture
@@ -251,3 +252,19 @@ def test_files_joined_keep_what_is_begun_and_of_two_the_further(store, tmp_path)
     assert set(store.records()) == {"k0", "k4"}
     store.add_from(other)
     assert store.parts_done() == {"k1": 4, "k2": 5, "k3": 1, "k5": 7}
+
+
+def test_an_error_after_sqlite_itself_rolled_back_is_told_as_it_is(tmp_path):
+    store = Store(tmp_path / "study.sqlite")
+    store.add_cases({"a": "first"})
+    with pytest.raises(StoreError, match="UNIQUE constraint failed"), store._writing() as connection:
+        connection.execute("INSERT OR ROLLBACK INTO cases SELECT * FROM cases")
+    assert set(store.cases()) == {"a"}
+
+
+def test_a_table_that_another_process_has_made_meanwhile_is_not_made_again(tmp_path):
+    store = Store(tmp_path / "study.sqlite")
+    store.add_cases({"a": "first"})
+    with store._open() as connection:
+        _add_tags_table(store.path, connection)
+    assert set(store.cases()) == {"a"}

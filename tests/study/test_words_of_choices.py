@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from canon import RK4, Hamiltonian, coordinates, work_precision
+from canon import RK4, Hamiltonian, choose, coordinates, propagate, work_precision
 from canon.flow.method.setting import Setting
-from canon.mechanics import PoissonSystem
+from canon.mechanics import PoissonSystem, field_of_function
 from canon.scene import find
 from canon.study.energy_drift.drift import Growth, drift
 from canon.study.energy_drift.drift_rows import DriftRow
@@ -116,3 +116,20 @@ def test_a_walk_beyond_round_off_is_said_to_wander():
             title="", span=100.0, period=None, time_unit="", rows=(row,), observables=("energy",)
         )
         assert said in drift_table(study)
+
+
+def test_a_vector_field_is_followed_to_a_position_for_long():
+    """A spring with little friction: q = exp(−t/2000) (cos w t + sin w t/(2000 w)), w² = 1 − 1/2000²."""
+
+    def spring(_time, state):
+        q, p = state
+        return [p, -q - p / 1000]
+
+    field, span, accuracy = field_of_function(spring, 2), 6000.0, 1e-2
+    made = choose(field, span, [1.0, 0.0], accuracy=accuracy, observable="position", methods=[RK4()])
+    assert made.reached
+    motion = propagate(field, (0.0, span), [1.0, 0.0], method=RK4(), step=made.step, samples=100)
+    rate = math.sqrt(1.0 - 1.0 / 2000.0**2)
+    right = np.exp(-motion.t / 2000) * (np.cos(rate * motion.t) + np.sin(rate * motion.t) / (2000 * rate))
+    assert np.abs(motion.y[0] - right).max() < accuracy
+    assert made.predicted_error <= accuracy
