@@ -326,7 +326,8 @@ def _climb(left: Expr, right: Expr, domain: Domain, deadline: float, names: tupl
         without = _with_values(nothing, sides, names, domain, _share(SEARCH_SHARE, deadline), valued=False)
         if without.fails:
             return without
-    search = search_widely(left, right, domain, _share(SEARCH_SHARE, deadline))
+    wide = search_widely(left, right, domain, _share(SEARCH_SHARE, deadline))
+    search = wide if wide.tried else search  # which knows something where no time was left
     if search.agreements == 0 and search.counterexample is None and not search.unmodelled:
         search = search_branches(left, right, domain, _share(SEARCH_SHARE, deadline))
     if search.counterexample is not None:
