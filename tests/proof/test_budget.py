@@ -113,9 +113,7 @@ def test_a_proof_waits_for_that_of_another_thread_no_longer_than_it_may():
     with worker._lock:
         said = prove_in_worker([x - x], EVERYWHERE, 0.1)
         assert said == "another thread's proof took the 0.1 s"
-        verdict = vanishes(OPEN, budget=0.3)
-        assert verdict.undecided
-        assert "besselj is not modelled" in str(verdict)
+        assert vanishes(OPEN, budget=0.3).undecided
     assert prove_in_worker([x - x], EVERYWHERE, 20.0)[0].holds
 
 

@@ -82,6 +82,21 @@ def test_a_verdict_says_which_function_is_not_modelled(wrong):
     assert "no point" not in str(found)
 
 
+def test_what_was_seen_at_first_is_said_where_no_time_is_left_for_more(monkeypatch):
+    """It said that no point was found where both sides have a value."""
+    p = sp.Symbol("p", positive=True)
+    doubled = 2 ** (2 * p - 1) / sqrt(sp.pi) * sp.gamma(p) * sp.gamma(p + Rational(1, 2))
+    monkeypatch.setattr("canon.proof.vanish.SEARCH_SHARE", 0.0)
+    for left, right, said in (
+        (sp.gamma(2 * p), doubled, "agreement at "),
+        (besselj(0, x), besselj(1, x), "besselj is not modelled"),
+    ):
+        found = equal(left, right)
+        assert found.undecided
+        assert said in str(found)
+        assert "no point" not in str(found)
+
+
 def test_a_verdict_says_which_condition_is_not_modelled():
     found = equal(Piecewise((x, EITHER), (y, True)), x)
     assert found.undecided
