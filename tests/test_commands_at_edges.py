@@ -6,6 +6,7 @@ import argparse
 import errno
 import io
 import json
+import multiprocessing
 import os
 import sys
 
@@ -18,6 +19,7 @@ from canon.command.standard_streams import why_not_written
 from canon.exercise.sheet.sheet import MAX_BYTES, Claim, Sheet
 from canon.scene import find, names
 from canon.study.energy_drift.drift_study import drift_study
+from canon.study.errors import StudyError
 
 
 @pytest.mark.parametrize("command", ["choose", "drift"])
@@ -108,6 +110,19 @@ def test_an_error_of_a_file_is_not_taken_for_one_of_standard_output(monkeypatch)
     monkeypatch.setattr(choose, "run", lost)
     with pytest.raises(OSError, match=r"choice.sqlite"):
         main(["choose", "list"])
+
+
+def test_workers_end_with_a_study_that_ends_in_an_error(tmp_path, monkeypatch, capsys):
+    def lost(_study, _store, executor, *_others):
+        assert executor.submit(pow, 2, 3).result() == 8
+        raise StudyError("the disk is gone")
+
+    file = tmp_path / "study.toml"
+    file.write_text("[[study]]\nsystem = 'kepler'\nmethod = 'rk4'\nstep = 0.1\nspan = 10\n")
+    monkeypatch.setattr("canon.study.cases.run_study.run_study", lost)
+    assert main(["study", "run", str(file), "--jobs", "2"]) == 2
+    assert "the disk is gone" in capsys.readouterr().err
+    assert multiprocessing.active_children() == []
 
 
 def test_a_service_that_is_broken_is_not_said_to_lack_its_extra(monkeypatch):

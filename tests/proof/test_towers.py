@@ -90,6 +90,17 @@ def test_exponents_whose_sum_is_a_number_are_known_where_the_denominator_is_shor
     assert equal((first + 1) * (second + 1), sp.E - first + second + 1).fails
 
 
+@pytest.mark.parametrize("degree", [3, 67])
+def test_exponents_over_a_difference_of_powers_and_its_long_factor(degree):
+    whole = x**degree - y**degree
+    factor = sp.Add(*(x**k * y ** (degree - 1 - k) for k in range(degree)))
+    first, second = exp(x / whole), exp(-y / whole)
+    found = equal((first + 1) * (second + 1), exp(1 / factor) + first + second + 1, budget=0.5)
+    assert found.holds is (degree == 3)
+    assert not found.fails
+    assert equal((first + 1) * (second + 1), exp(2 / factor) + first + second + 1, budget=0.5).fails
+
+
 def test_exponents_over_what_is_zero_on_one_side():
     below = x + Abs(x)
     product = (exp(y / below) + 1) * (exp(1 / below) - 1)

@@ -72,3 +72,9 @@ def test_a_sum_of_squares_is_found_whichever_symbol_completes_the_square() -> No
     one_more = sp.expand((y + z * x) ** 2 + 1)
     assert equal(Abs(x) * Abs(one_more), Abs(x) * one_more).holds
     assert equal(Abs(x) * Abs(one_more - 2), Abs(x) * (one_more - 2)).fails
+
+
+def test_a_derivative_that_is_not_carried_out_is_one_number_at_each_place() -> None:
+    slope = Derivative(Abs(V(x)), x)
+    assert equal(slope * sin(y) ** 2, slope - slope * cos(y) ** 2).holds
+    assert equal(slope * sin(y) ** 2, slope + slope * cos(y) ** 2).fails

@@ -127,3 +127,11 @@ def test_progress_is_told_up_to_the_end():
     orbit_frequencies(action_variables(integral, {q: 0, p: 1}, digits=17), 1, progress=told.append)
     assert told == sorted(told)
     assert told[-1] == 1
+
+
+def test_an_orbit_that_more_digits_do_not_keep_either_is_read_and_says_so(monkeypatch):
+    torus = action_variables(hamilton_jacobi(PENDULUM), {q: 0, p: 1}, digits=17)
+    monkeypatch.setattr("canon.study.energy_drift.orbit_frequencies.KEPT", 0.0)
+    asked = orbit_frequencies(torus, 20.0)
+    assert asked.difference < 1e-12
+    assert 0.0 < asked.energy_error < 1e-25
