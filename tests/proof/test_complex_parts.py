@@ -409,3 +409,13 @@ def test_logarithms_of_algebraic_numbers_that_are_no_roots_of_real_ones():
     long = sqrt(2) + sqrt(3) + sqrt(5) + sqrt(7) + sqrt(11)
     assert equal(log(long**2), 2 * log(long)).holds
     assert equal(log(long**2), 2 * log(long - sqrt(11))).fails
+
+
+def test_logarithms_of_numbers_that_depend_on_a_parity():
+    n = symbols("n", integer=True)
+    number = 2 + cos(pi * n)
+    positive = Domain((number > 0, x > 0))
+    assert equal(log(number**2), 2 * log(number), positive).holds
+    assert equal(log(number**2), log(number), positive).fails
+    assert equal(log(x * number), log(x) + log(number), positive).holds
+    assert equal(log(x * number), log(x) - log(number), positive).fails
