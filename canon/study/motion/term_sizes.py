@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.expression.graph.number_systems import FLOAT64
-from canon.flow.run.values_at_states import size_of_energy
+from canon.flow.run.values_at_states import energy_and_rates
 from canon.study.motion.observables import ENERGY, Observable, counts_as_zero
 
 if TYPE_CHECKING:
@@ -77,7 +77,9 @@ def terms_along(motion: Trajectory, name: str, orbit: int = 0) -> Array:
     system, whole, t = record.task.system, record.whole.y, motion.t[places]
     states = whole[:, places, orbit] if whole.ndim == 3 else whole[:, places]
     if name == ENERGY and system.sums:  # written out they may be millions
-        return size_of_energy(system, states[..., np.newaxis], t)[:, 0]
+        velocity, force = np.split(np.asarray(energy_and_rates(system, states, t, FLOAT64)[1:]), 2)
+        sizes = np.abs(states * np.concatenate([force, velocity]))[system.rows]
+        return np.nan_to_num(np.sum(sizes, axis=0), nan=0.0, posinf=0.0)
     works = record.moving is not None and record.moving.work is not None
     rows = (
         [*system.rows, len(system.q) - system.varying] if works else system.rows
