@@ -12,7 +12,7 @@ import sympy as sp
 
 from canon import RK4, Hamiltonian, choose, coordinates, propagate, work_precision
 from canon.flow.method.setting import Setting
-from canon.mechanics import PoissonSystem, field_of_function
+from canon.mechanics import PoissonSystem, chain_sum, field_of_function, row_sum, written_out
 from canon.scene import find
 from canon.study.energy_drift.drift import Growth, drift
 from canon.study.energy_drift.drift_rows import DriftRow
@@ -24,6 +24,7 @@ from canon.study.method_choice.choice_table import answer, choice_table
 from canon.study.method_choice.error_law import expected_error
 from canon.study.method_choice.pilot_run import Pilot
 from canon.study.method_choice.work_precision import work_table
+from canon.study.motion.term_sizes import terms_along
 from tests.study import series
 
 x = coordinates("x")
@@ -133,3 +134,17 @@ def test_a_vector_field_is_followed_to_a_position_for_long():
     right = np.exp(-motion.t / 2000) * (np.cos(rate * motion.t) + np.sin(rate * motion.t) / (2000 * rate))
     assert np.abs(motion.y[0] - right).max() < accuracy
     assert made.predicted_error <= accuracy
+
+
+def test_rounding_moves_the_energy_of_a_kept_sum_as_it_moves_what_is_written_out():
+    q, p = sp.symbols("q0:90", real=True), sp.symbols("p0:90", real=True)
+    kept = row_sum(lambda p: p**2 / 2, p) + chain_sum(lambda a, b: (b - a) ** 2 / 2, [0, *q, 0])
+    start = np.concatenate([np.sin(np.arange(90)), np.cos(np.arange(90))])
+    sizes = []
+    for H in (kept, written_out(kept)):
+        motion = propagate(Hamiltonian(H, q, p), (0, 5), start, method=RK4(), step=0.05, samples=50)
+        sizes.append(terms_along(motion, "energy"))
+    np.testing.assert_allclose(*sizes, rtol=1e-10)
+    bonds = np.diff(np.concatenate([[0.0], start[:90], [0.0]]))
+    by_hand = np.abs(start[90:] ** 2).sum() + np.abs(start[:90] * (bonds[:-1] - bonds[1:])).sum()
+    assert sizes[0][0] == pytest.approx(by_hand)
