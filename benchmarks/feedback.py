@@ -1,7 +1,7 @@
 """Diagnosis on trial: wrong answers made by a model of slips, and how many sentences name the slip.
 
     python benchmarks/feedback.py                             # the table of the last run over the whole corpus
-    python benchmarks/feedback.py --run --lines found.jsonl   # a run: some hours of processor time, resumed if cut off
+    python benchmarks/feedback.py --run --lines found.jsonl   # a run: minutes of processor time, resumed if cut off
     python benchmarks/feedback.py --show --lines found.jsonl  # the open answers whose slip was not named
 
 Slips and questions are those of ``tests/exercise/slips_of_students.py``. An answer is *named* where the diagnosis has

@@ -281,6 +281,7 @@ TRIG = (sp.sin, sp.cos, sp.tan)
 TERM = {
     M.TERM_SIGN,
     M.MULTIPLIERS_OPPOSITE,
+    M.REACTIONS_OPPOSITE,
     M.TIME_DERIVATIVE_SIGN,
     M.WRONG_SIGN,
     M.SIGN_OF,
@@ -409,8 +410,8 @@ def sign_of_a_bracket(question: Question) -> Iterator[dict[Place, sp.Expr]]:
 
 DERIVATIONS: dict[str, tuple[Callable[[Question], Iterator[dict[Place, sp.Expr]]], set[M]]] = {
     "partial for total derivative": (partial_for_total, MISSING),
-    "multipliers of the other sign": (opposite_multipliers, {M.MULTIPLIERS_OPPOSITE, M.TERM_SIGN, M.SIGN_OF,
-                                                              M.WRONG_SIGN}),
+    "multipliers of the other sign": (opposite_multipliers, {M.MULTIPLIERS_OPPOSITE, M.REACTIONS_OPPOSITE,
+                                                              M.TERM_SIGN, M.SIGN_OF, M.WRONG_SIGN}),
     "∂F/∂t forgotten": (time_derivative_forgotten, {M.TIME_DERIVATIVE_MISSING, M.TERM_MISSING}),
     "equations exchanged": (equations_exchanged, {M.EQUATIONS_EXCHANGED, M.SYMBOL, M.SYMBOLS_EXCHANGED}),
     "brackets reversed": (sign_of_a_bracket, TERM),
@@ -524,7 +525,7 @@ def accepted(slip: str) -> set[M]:
 
 STATED = {M.TIME_DERIVATIVE_MISSING, M.TIME_DERIVATIVE_SIGN, M.ONLY_SMALL, M.ONLY_FOR, M.EQUATIONS_EXCHANGED,
           M.OPPOSITE_CONVENTION, M.BRACKET_OPPOSITE, M.VALENCE, M.MAP_MENDED, M.RULE_OPPOSITE,
-          M.MULTIPLIERS_OPPOSITE, M.FACTOR_OF_COVARIANT}  # fmt: skip
+          M.MULTIPLIERS_OPPOSITE, M.REACTIONS_OPPOSITE, M.FACTOR_OF_COVARIANT}  # fmt: skip
 """Mistakes of the claim as a whole, which name their slip whatever is repaired."""
 
 
