@@ -219,9 +219,7 @@ def _beside(square: BallFunction, slope: BallFunction, place: arb, direction: in
         if direction * real_value(slope, place.union(inside)) > 0 and real_value(square, inside) > 0:
             return inside
         step = (step / 2).mid()
-    raise NoCycleError(
-        f"{name} is at rest too near to a separatrix; ask for more digits, or change the start"
-    )
+    raise NoCycleError(f"{name} is at rest too near to an equilibrium or a separatrix; change the start")
 
 
 def _functions(square: Expr, q: Symbol, balls: Mapping[Symbol, acb]) -> tuple[BallFunction, BallFunction]:
