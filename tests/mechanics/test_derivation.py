@@ -213,6 +213,9 @@ def test_a_place_with_a_kink_has_no_force_beside_it():
     accelerations = acceleration_function(fall, {m: 2, w: 10})
     for place in (-0.5, 0.5):
         assert accelerations([place, 1.0], [1.0, 1.0], 0.0) == pytest.approx([-10 * np.sign(place), 0])
+    canonical = canonical_derivation([Particle(m, (sp.Abs(x), y))], (x, y), field=(-w, 0))
+    velocity, force = hamilton_function(canonical, {m: 2, w: 10})([-0.5, 1.0], [3.0, 4.0], 0.0)
+    assert [*velocity, *force] == pytest.approx([1.5, 2, 20, 0])
 
 
 def test_a_place_by_a_function_without_an_operation_is_refused_by_its_name():

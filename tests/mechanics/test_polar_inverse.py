@@ -1,5 +1,7 @@
 """Inverses of maps of polar type, proved both ways, and K in the new variables; wrong twins beside them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -218,3 +220,13 @@ def test_k_of_a_map_that_is_solved_step_by_step():
     assert vanishes((K - due).diff(Q)).holds
     assert vanishes((K - due).diff(P)).holds
     assert is_new_hamiltonian(T, q + p**2 / 2, due + P, [Q, P]).fails
+
+
+def test_an_energy_that_tells_points_of_one_image_apart_has_no_k():
+    """(q, p) and (−q, −p) have the image (q², p/2q): p²/2 + q² is the same in both, p²/2 + q is not."""
+    T = CanonicalTransformation(q, p, q**2, p / (2 * q))
+    assert transformed_hamiltonian(T, p**2 / 2 + q**2, [Q], [P]).H == 2 * P**2 * Q + Q
+    with pytest.raises(NoClosedInverseError, match="the K found so could not be proved"):
+        transformed_hamiltonian(T, p**2 / 2 + q, [Q], [P])
+    right = replace(T, domain=Domain((q > 0,)))
+    assert 2 * P**2 * Q + sqrt(Q) == transformed_hamiltonian(right, p**2 / 2 + q, [Q], [P]).H

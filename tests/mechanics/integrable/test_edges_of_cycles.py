@@ -13,6 +13,7 @@ from canon.mechanics.integrable.complete_integral import hamilton_jacobi
 from canon.mechanics.integrable.cycle_quadrature import Libration
 from canon.mechanics.integrable.cycles import CycleKind
 from canon.mechanics.integrable.function_splitting import product_parts, reference_places, sum_parts
+from canon.mechanics.integrable.separated_momenta import NotSeparatedError
 from canon.mechanics.integrable.turning_points import NoCycleError
 from canon.proof.domain.balls import precision
 from canon.proof.domain.domain import EVERYWHERE
@@ -173,3 +174,11 @@ def test_a_free_particle_has_its_action_function_and_is_judged_without_time():
     assert sp.sqrt(2) * sp.sqrt(free.energy) * q == free.W
     assert free.motion == (sp.sqrt(2) * q / (2 * sp.sqrt(free.energy)),)
     assert free.is_complete_integral(budget=0.0).status is Status.HOLDS
+
+
+def test_where_separability_is_not_decided_that_is_told():
+    unknown = Hamiltonian(p**2 * sp.besselj(0, k - x), q, p)
+    with pytest.raises(
+        NotSeparatedError, match="whether H separates in q was not decided; declare what is positive"
+    ):
+        hamilton_jacobi(unknown)
