@@ -80,6 +80,9 @@ def _bounded(name: str, A: Expr, terms: Mapping[Expr, Expr], q: Symbol) -> Itera
         yield -A
     elif name in ("oscillator", "radial oscillator"):
         yield -terms[q**2]
+    elif name == "soft quartic well":  # inside its two hills, whose height is where the zeros of p² meet
+        yield A
+        yield terms[q**2] ** 2 - 4 * A * terms[q**4]
 
 
 def _of_the_kind(name: str, A: Expr, terms: Mapping[Expr, Expr], q: Symbol) -> Iterator[Expr]:
