@@ -6,6 +6,8 @@ import pytest
 import sympy as sp
 from flint import arb
 
+from canon.exercise.claim_verdict import judge
+from canon.exercise.sheet.sheet import Claim
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.integrable.actions import action_variables
 from canon.mechanics.integrable.closed_form import actions_in_closed_form as module
@@ -130,6 +132,30 @@ def test_two_wells_have_formulas_on_both_sides_of_their_separatrix(start, kind):
     assert validity(torus).kind == (kind * 2 * torus.integral.energy,)
     hard = torus_of(p**2 / 2 + q**2 / 2 + q**4 / 4, start)
     assert validity(hard).kind == ()
+
+
+def test_a_soft_spring_holds_below_its_hills():
+    """V = q²/2 − a q⁴/4 rises to 1/(4 a)."""
+    torus = torus_of(p**2 / 2 + q**2 / 2 - a * q**4 / 4, {q: 0, p: HALF}, {a: 1})
+    E, bounded = torus.integral.energy, validity(torus).bounded
+    for energy, inside in ((sp.Rational(24, 100), True), (sp.Rational(26, 100), False), (-HALF, False)):
+        assert all(f.subs({E: energy, a: 1}) > 0 for f in bounded) == inside
+
+
+@pytest.mark.slow
+def test_an_action_of_a_soft_spring_is_judged_on_bounded_motions():
+    """Beyond the hills 1 − 4 b E is negative, and so is no motion there a counterexample to |1 − 4 b E|."""
+    keys = {
+        "q": ["q"],
+        "p": ["p"],
+        "H": "p**2/2 + q**2/2 - b*q**4/4",
+        "parameters": {"b": "positive", "E": "real"},
+    }
+    right = "2*sqrt(2*(R + 1))/(3*pi*b)*(elliptic_e((1 - R)/(1 + R)) - R*elliptic_k((1 - R)/(1 + R)))"
+    for root in ("sqrt(1 - 4*b*E)", "sqrt(Abs(1 - 4*b*E))"):
+        assert judge(Claim("a", "action-angle", {**keys, "J": [right.replace("R", root)]})).holds
+    wrong = right.replace("R", "sqrt(1 - 2*b*E)")
+    assert judge(Claim("a", "action-angle", {**keys, "J": [wrong]})).fails
 
 
 def test_neighbouring_tori_are_of_the_same_kind():
