@@ -64,7 +64,10 @@ def validity(torus: ActionVariables) -> Validity:
     bounded, kind = list[Expr](), list[Expr]()
     for momentum, cycle in zip(torus.integral.momenta, torus.cycles, strict=True):
         found = recognised(momentum, cycle, torus.values)
-        if found is None or momentum.square is None or cycle.kind is CycleKind.IGNORABLE:
+        if found is None or cycle.kind is CycleKind.IGNORABLE:
+            continue
+        if momentum.square is None:
+            bounded += _turning(momentum.shift, momentum.q)
             continue
         terms = terms_in(in_reciprocals(about_its_kink(momentum.square, momentum.q)), momentum.q)
         A = terms.pop(sp.S.One, sp.S.Zero)
@@ -83,6 +86,15 @@ def _bounded(name: str, A: Expr, terms: Mapping[Expr, Expr], q: Symbol) -> Itera
     elif name == "soft quartic well":  # inside its two hills, whose height is where the zeros of p² meet
         yield A
         yield terms[q**2] ** 2 - 4 * A * terms[q**4]
+
+
+def _turning(p: Expr, q: Symbol) -> Iterator[Expr]:
+    """Yield A² − B² of p = N/(A + B cos q), whose rate A + B cos q vanishes nowhere then."""
+    below = sp.fraction(sp.together(p))[1]
+    if below.has(q):
+        terms = terms_in(below, q)
+        A = terms.pop(sp.S.One, sp.S.Zero)
+        yield A**2 - sp.Add(*terms.values()) ** 2
 
 
 def _of_the_kind(name: str, A: Expr, terms: Mapping[Expr, Expr], q: Symbol) -> Iterator[Expr]:
