@@ -133,7 +133,7 @@ def action_variables(
         bits *= 2
     raise NoCycleError(
         f"the actions were not found to {digits} digits: the motion is very near to a separatrix or an equilibrium, "
-        "or a frequency is zero; ask for fewer digits, or change the start"
+        "or an action or a frequency is zero; ask for fewer digits, or change the start"
     )
 
 
