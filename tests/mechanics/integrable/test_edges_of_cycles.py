@@ -95,6 +95,9 @@ def test_in_a_frame_that_moves_along_a_frequency_may_vanish():
     assert [float(w) for w in slow.frequencies] == pytest.approx([1, 1e-25], rel=1e-3)
     with pytest.raises(NoCycleError, match=r"not found to 3 digits: .* or a frequency is zero"):
         action_variables(moving, start, digits=3)
+    driven = hamilton_jacobi(Hamiltonian(p - sp.cos(q), q, p))
+    with pytest.raises(NoCycleError, match="or an action or a frequency is zero"):
+        action_variables(driven, {q: 0, p: 1}, digits=3)
 
 
 def test_angles_of_a_shifted_momentum():

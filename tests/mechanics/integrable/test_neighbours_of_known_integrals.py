@@ -158,6 +158,19 @@ def test_an_action_of_a_soft_spring_is_judged_on_bounded_motions():
     assert judge(Claim("a", "action-angle", {**keys, "J": [wrong]})).fails
 
 
+def test_a_rate_that_vanishes_on_the_way_is_no_turn():
+    """With θ̇ = a + b cos θ and b > a no turn is ended: |a² − b²| is as right as a² − b²."""
+    turning = torus_of(p * (a + k * sp.cos(q)), {q: 0, p: 1}, {a: 2, k: 1})
+    assert validity(turning).bounded == (a**2 - k**2,)
+    assert validity(torus_of(p - k * sp.cos(q), {q: 0, p: 3}, {k: 1})).bounded == ()
+    keys = {"q": ["theta"], "p": ["p"], "H": "p*(a + b*cos(theta))", "energy": "E"} | {
+        "parameters": {"a": "positive", "b": "positive", "E": "real"}
+    }
+    for square, status in (("a**2 - b**2", "HOLDS"), ("Abs(a**2 - b**2)", "HOLDS"), ("a**2 + b**2", "FAILS")):
+        verdict = judge(Claim("a", "action-angle", {**keys, "J": [f"E/sqrt({square})"]}))
+        assert verdict.status.name == status
+
+
 def test_neighbouring_tori_are_of_the_same_kind():
     """Just below the separatrix a 64th more of the momentum turns over."""
     below = torus_of(p**2 / 2 - sp.cos(q), {q: 0, p: sp.Rational(199, 100)})
