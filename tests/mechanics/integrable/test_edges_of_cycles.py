@@ -1,5 +1,7 @@
 """Cycles at their edges: other potentials, shifts, frequencies that vanish, starts at rest, poles beside the path."""
 
+from dataclasses import replace
+
 import mpmath as mp
 import pytest
 import sympy as sp
@@ -185,3 +187,19 @@ def test_where_separability_is_not_decided_that_is_told():
         NotSeparatedError, match="whether H separates in q was not decided; declare what is positive"
     ):
         hamilton_jacobi(unknown)
+
+
+def test_a_constant_on_which_nothing_depends_makes_no_complete_integral():
+    """h = sin 2α − 2 sin α cos α is zero: both momenta depend on E alone, which their derivatives hide."""
+    px, py = sp.symbols("p_x p_y", real=True)
+    oscillators = hamilton_jacobi(Hamiltonian((px**2 + py**2 + x**2 + y**2) / 2, [x, y], [px, py]))
+    assert oscillators.is_complete_integral().holds
+    alpha, E = oscillators.constants
+    hidden = sp.sin(2 * alpha) - 2 * sp.sin(alpha) * sp.cos(alpha)
+    one, other = oscillators.momenta
+    squares = (replace(one, square=E + hidden - x**2), replace(other, square=E - hidden - y**2))
+    verdict = replace(oscillators, momenta=squares).is_complete_integral()
+    assert verdict.fails
+    assert verdict.feedback == "det ∂²W/∂q∂α vanishes"
+    squares = (replace(one, square=E + alpha - x**2), replace(other, square=E - alpha - y**2))
+    assert replace(oscillators, momenta=squares).is_complete_integral().holds
