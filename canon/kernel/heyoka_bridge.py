@@ -109,7 +109,7 @@ def _decimal(value: Fraction, digits: int) -> str:
 
 def is_heyoka_number(x: object) -> bool:
     """Tell whether a number is one of heyoka's own, wider than the platform's."""
-    return type(x).__module__.startswith("heyoka") and type(x).__name__ in ("real128", "real")
+    return str(type(x).__module__).startswith("heyoka") and type(x).__name__ in ("real128", "real")
 
 
 def fraction_of(x: Any) -> Fraction:

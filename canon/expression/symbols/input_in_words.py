@@ -81,13 +81,15 @@ def given_kind(x: Any, kinds: type[Kind] | tuple[type[Any], ...], name: str, ins
 def of_sympy(x: Any) -> bool:
     """Tell whether something is of a class of SymPy's, or of one derived from it.
 
+    The classes of its applied functions, ``dynamicsymbols`` among them, have no module themselves.
+
     Examples
     --------
     >>> import sympy
     >>> of_sympy(sympy.Symbol("x")), of_sympy("x")
     (True, False)
     """
-    return any(kind.__module__.partition(".")[0] == "sympy" for kind in type(x).__mro__)
+    return any(str(kind.__module__).partition(".")[0] == "sympy" for kind in type(x).__mro__)
 
 
 def described(x: Any) -> str:

@@ -50,7 +50,7 @@ def is_heyoka_system(given: Any) -> bool:
     if not isinstance(given, list | tuple) or not given:
         return False
     return all(
-        isinstance(pair, tuple) and len(pair) == 2 and type(pair[0]).__module__.startswith("heyoka")  # pyright: ignore[reportUnknownArgumentType]
+        isinstance(pair, tuple) and len(pair) == 2 and str(type(pair[0]).__module__).startswith("heyoka")  # pyright: ignore[reportUnknownArgumentType]
         for pair in given  # pyright: ignore[reportUnknownVariableType]
     )
 

@@ -102,7 +102,7 @@ def recognised(system: Any) -> RecognisedSystem:
     >>> found.state, found.parameters
     ((x, x_dot), (k,))
     """
-    if type(system).__module__.startswith("sympy.physics.mechanics"):
+    if str(type(system).__module__).startswith("sympy.physics.mechanics"):
         system = from_sympy_mechanics(system)
     if is_heyoka_system(system):
         system = heyoka_field(system)

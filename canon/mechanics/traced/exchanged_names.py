@@ -215,7 +215,7 @@ def _is_of_user(x: Any) -> bool:
     kind = type(x)
     if isinstance(x, type | types.ModuleType | np.ndarray) or not hasattr(x, "__dict__"):
         return False
-    return _is_module_of_user(kind.__module__)
+    return _is_module_of_user(str(kind.__module__))
 
 
 def _is_module_of_user(name: str) -> bool:
@@ -224,7 +224,7 @@ def _is_module_of_user(name: str) -> bool:
 
 def _is_spline(x: Any) -> bool:
     return (
-        type(x).__module__.startswith("scipy.interpolate")
+        str(type(x).__module__).startswith("scipy.interpolate")
         and hasattr(x, "c")
         and hasattr(x, "x")
         and (np.ndim(x.c) == 2 and len(x.x) == np.shape(x.c)[1] + 1)

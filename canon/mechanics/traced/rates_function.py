@@ -9,7 +9,7 @@ __all__ = ["is_rates_function"]
 
 def is_rates_function(system: Any) -> bool:
     """Tell whether a system is a function f(t, y) and no value that canon knows."""
-    own = type(system).__module__.partition(".")[0] in (
+    own = str(type(system).__module__).partition(".")[0] in (
         "canon",
         "sympy",
         "heyoka",

@@ -160,7 +160,7 @@ def system_text(
     (('x', 'x_dot'), True)
     """
     called = name or type(system).__name__
-    if type(system).__module__.startswith("sympy.physics.mechanics"):
+    if str(type(system).__module__).startswith("sympy.physics.mechanics"):
         system = from_sympy_mechanics(system)
     if is_heyoka_system(system):
         called, system = name or "equations", heyoka_field(system)
