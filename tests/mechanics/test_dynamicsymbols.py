@@ -4,11 +4,14 @@ import pytest
 import sympy as sp
 from sympy.physics.mechanics import dynamicsymbols
 
-from canon.expression.symbols.symbol import acceleration, coordinates, parameters, time
+from canon.expression.symbols.symbol import acceleration, coordinates, parameters, time, time_derivative
+from canon.flow.propagation import propagate
 from canon.mechanics.algebra.dynamicsymbols import plain
 from canon.mechanics.at_scale.constrained import constrained
 from canon.mechanics.at_scale.first_order import canonical_derivation
 from canon.mechanics.at_scale.second_order import derivation, derivation_of_lagrangian
+from canon.mechanics.canonical.transformation import CanonicalTransformation
+from canon.mechanics.hamilton.bracket import poisson_bracket
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.hamilton.legendre_pair import hamiltonian, is_hamiltonian_of
 from canon.mechanics.hamilton.symmetry import (
@@ -17,6 +20,7 @@ from canon.mechanics.hamilton.symmetry import (
     is_symmetry,
     noether_charge,
 )
+from canon.mechanics.integrable.complete_integral import hamilton_jacobi
 from canon.mechanics.lagrange.appell import GibbsAppell
 from canon.mechanics.lagrange.body import (
     Particle,
@@ -50,6 +54,7 @@ from canon.mechanics.reduction.ignorable import adapted, is_ignorable
 from canon.mechanics.reduction.routh import routhian
 from canon.mechanics.reduction.singular import singularity
 from canon.proof.domain.verdict import Status
+from canon.study.motion.system_text import system_text
 
 m, l, g, k, c, e, B, a = parameters("m l g k c e B a", positive=True)
 TAU = dynamicsymbols._t
@@ -303,3 +308,28 @@ def test_a_bound_symbol_may_have_the_name_of_a_coordinate_or_of_the_time():
         assert plain(area, [x]).doit() == x**3 / 3
         with pytest.raises(ValueError, match=refused):
             plain(area + bound, [x])
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        (lambda x, p: time_derivative(x**2, [x]), r"q should be symbols, .* not x\(t\)"),
+        (lambda x, p: poisson_bracket(x, p, [x], [p]), r"q should be symbols, .* not x\(t\)"),
+        (lambda x, p: CanonicalTransformation(x, p, p, -x), r"q should be symbols, .* not x\(t\)"),
+        (
+            lambda x, p: hamilton_jacobi(x),
+            r"should be a Hamiltonian, not x\(t\); give Hamiltonian\(H, q, p\)",
+        ),
+        (
+            lambda x, p: propagate(x, (0, 1), [1]),
+            r"x\(t\) is no system that can be propagated: give a Hamiltonian",
+        ),
+        (lambda x, p: system_text(x), r"x\(t\) is no system that can be propagated: give a Hamiltonian"),
+    ],
+)
+def test_doors_for_symbols_say_that_a_function_of_time_is_none(asked, message):
+    """The class of x(t) has no module that would tell whose it is."""
+    x, p = dynamicsymbols("x p")
+    assert type(x).__module__ is None
+    with pytest.raises(TypeError, match=message):
+        asked(x, p)
