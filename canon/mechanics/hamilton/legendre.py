@@ -317,7 +317,7 @@ def _of_growing_cubic(
 def _of_odd_power(f: Expr, equation: Expr, x: Symbol, y: Symbol) -> Iterator[tuple[tuple[Expr, ...], Expr]]:
     """Yield the real root x = s r of xⁿ = c with an odd n from 3, where s = sign(c) and r = |c|^(1/n).
 
-    In f and in x y, which holds c = s rⁿ, powers of s are 1 or s, so that no |c| stands beside sign(c).
+    In f and in x y, which holds c = s rⁿ if c is affine in y, powers of s are 1 or s: no |c| stands beside sign(c).
     """
     poly = polynomial_in(equation, x)
     if poly is None or not is_binomial(poly) or poly.degree() % 2 == 0 or poly.degree() < 3:
@@ -325,11 +325,12 @@ def _of_odd_power(f: Expr, equation: Expr, x: Symbol, y: Symbol) -> Iterator[tup
     n, c = poly.degree(), -poly.eval(0) / poly.LC()
     s, r = sp.Dummy(), sp.Dummy(positive=True)
     slope = c.diff(y)
-    through_c = (s * r**n - exchanged(c, {y: sp.S.Zero})) / slope
+    through_c = y if slope.has(y) else (s * r**n - exchanged(c, {y: sp.S.Zero})) / slope
     total = sp.expand(s * r * through_c - substitute(f, {x: s * r}))
-    reduced = sp.Add(
-        *(term.subs(s, 1) * s ** (sp.Poly(term, s).degree() % 2) for term in sp.Add.make_args(total))
-    )
+    monomials = [(term.subs(s, 1), term.as_coeff_exponent(s)[1]) for term in sp.Add.make_args(total)]
+    if not all(power.is_Integer for _, power in monomials):
+        return
+    reduced = sp.Add(*(rest * s ** (power % 2) for rest, power in monomials))
     values = {s: sp.sign(c), r: sp.Abs(c) ** sp.Rational(1, n)}
     yield (sp.sign(c) * sp.Abs(c) ** sp.Rational(1, n),), exchanged(reduced, values)
 
