@@ -308,3 +308,21 @@ def test_a_hamiltonian_of_which_no_value_is_known_is_left_open():
     convex = Lagrangian(sp.cosh(x.dot) + x.dot**2, [x])
     assert is_hamiltonian_of(convex, p**2 * sp.besselj(0, p), [p]).undecided
     assert is_hamiltonian_of(convex, p**2, [p]).fails
+
+
+@pytest.mark.parametrize(
+    ("L", "H"),
+    [
+        (1 / x.dot**2, lambda p: -sp.Rational(3, 2) * sp.cbrt(2) * sp.Abs(p) ** sp.Rational(2, 3)),
+        (-3 / x.dot**4, lambda p: 15 * (sp.Abs(p) / 12) ** sp.Rational(4, 5)),
+        (x.dot**4 / 4, lambda p: sp.Rational(3, 4) * sp.Abs(p) ** sp.Rational(4, 3)),
+    ],
+    ids=str,
+)
+def test_an_even_power_of_either_sign_has_a_hamiltonian(L, H):
+    p = x.momentum
+    found = hamiltonian(Lagrangian(L, [x])).H
+    for sign in (p > 0, p < 0):
+        assert vanishes(found - H(p), Domain((sign,))).holds
+        assert vanishes(found + H(p), Domain((sign,))).fails
+    assert is_hamiltonian_of(Lagrangian(L, [x]), found, [p]).holds
