@@ -7,7 +7,7 @@ is one kind of bounded motion; a pendulum swings or turns over, a double well ha
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import sympy as sp
 from sympy import Expr
@@ -86,6 +86,21 @@ def _bounded(name: str, A: Expr, terms: Mapping[Expr, Expr], q: Symbol) -> Itera
     elif name == "soft quartic well":  # inside its two hills, whose height is where the zeros of p² meet
         yield A
         yield terms[q**2] ** 2 - 4 * A * terms[q**4]
+    yield from (-c for c in _walls(name, terms, q) if not c.is_nonpositive)
+
+
+def _walls(name: str, terms: Mapping[Expr, Expr], q: Symbol) -> Iterator[Expr]:
+    """Yield the coefficients in p² of what keeps the coordinate off its singular or distant places, if negative."""
+    match name:
+        case "Kepler" | "isochrone" | "radial oscillator":
+            yield terms[q**-2]
+        case "polar angle" | "even power":
+            yield from terms.values()
+        case "Morse":
+            rates = {cast("Expr", f.args[0]).diff(q): c for f, c in terms.items()}
+            yield from (c for rate, c in rates.items() if rate / 2 in rates)
+        case _:
+            return
 
 
 def _turning(p: Expr, q: Symbol) -> Iterator[Expr]:
