@@ -171,6 +171,38 @@ def test_a_rate_that_vanishes_on_the_way_is_no_turn():
         assert verdict.status.name == status
 
 
+@pytest.mark.parametrize(
+    ("H", "start"),
+    [
+        (p**2 / 2 + c / sp.sin(q) ** 2, {q: 1, p: 1}),
+        (p**2 / 2 + c * q**4, {q: 0, p: 1}),
+        (p**2 / 2 + c / r**2 - 3 / r, {r: 1, p: HALF}),
+        (p**2 / 2 + c / r**2 + r**2, {r: 1, p: HALF}),
+        (p**2 / 2 + c / r**2 - 5 / (1 + sp.sqrt(1 + r**2)), {r: 1, p: HALF}),
+        (p**2 / 2 + c * sp.exp(-2 * q) - 2 * sp.exp(-q), {q: 0, p: HALF}),
+    ],
+    ids=["polar angle", "even power", "Kepler", "radial oscillator", "isochrone", "Morse"],
+)
+def test_without_a_wall_no_motion_is_bounded(H, start):
+    """With c < 0 the coordinate runs away or into a singular place."""
+    torus = torus_of(H, start, {c: 1})
+    bounded = validity(torus).bounded
+    assert all(f.subs(torus.values) > 0 for f in bounded)
+    assert not all(f.subs({**torus.values, c: -1}) > 0 for f in bounded)
+
+
+@pytest.mark.slow
+def test_an_action_between_walls_of_an_unknown_sign_is_judged_where_there_are_walls():
+    keys = {"q": ["q"], "p": ["p"], "H": "p**2/2 + c/sin(q)**2", "energy": "E"} | {
+        "parameters": {"c": "real", "E": "real"}
+    }
+    for J, status in (
+        ("sqrt(2*Abs(E)) - sqrt(2*Abs(c))", "HOLDS"),
+        ("sqrt(2*Abs(E)) + sqrt(2*Abs(c))", "FAILS"),
+    ):
+        assert judge(Claim("a", "action-angle", {**keys, "J": [J]})).status.name == status
+
+
 def test_neighbouring_tori_are_of_the_same_kind():
     """Just below the separatrix a 64th more of the momentum turns over."""
     below = torus_of(p**2 / 2 - sp.cos(q), {q: 0, p: sp.Rational(199, 100)})
