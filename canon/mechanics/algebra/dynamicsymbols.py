@@ -231,6 +231,18 @@ def _rate_named(name: str, coordinates: Mapping[str, Symbol]) -> Symbol | None:
     return (velocity if what == "dot" else acceleration)(coordinates[of])
 
 
+def _check_no_rate_of_symbols(f: Expr, named: Mapping[str, Symbol], t: Symbol) -> None:
+    """Refuse a derivative by the time of an expression in coordinates: symbols are constant in it, rates are meant."""
+    for d in f.atoms(Derivative) if t.name not in named else ():
+        by_time = any(isinstance(v, Symbol) and v.name == t.name for v in d.variables)
+        moving = sorted(s.name for s in d.expr.free_symbols if isinstance(s, Symbol) and s.name in named)
+        if by_time and moving and not isinstance(d.expr, AppliedUndef):
+            raise ValueError(
+                f"{d} takes the symbol {moving[0]} for a constant: write its rate as {moving[0]}.dot, or give "
+                f"functions of {t} instead, as SymPy's dynamicsymbols are"
+            )
+
+
 def _with_derivatives_taken(f: Expr) -> Expr:
     """Return f with the derivatives taken that SymPy leaves as they are written, but for those of plain functions.
 
@@ -257,7 +269,8 @@ def plain(f: Any, q: Sequence[Symbol], t: Symbol = time, *, keep_sums: bool = Fa
     Raises
     ------
     ValueError
-        Where another symbol has the name of a coordinate or of the time.
+        Where another symbol has the name of a coordinate or of the time, or a derivative by the time that SymPy left
+        as it was written holds coordinates as symbols.
 
     Examples
     --------
@@ -273,6 +286,8 @@ def plain(f: Any, q: Sequence[Symbol], t: Symbol = time, *, keep_sums: bool = Fa
     given_kind(t, Symbol, "the time", "give a domain and the like by their names")
     named = {s.name: s for s in q}
     symbols, functions = symbols_and_functions(expression)
+    if t in symbols or Symbol(t.name) in symbols:
+        _check_no_rate_of_symbols(expression, named, t)
     if functions:
         expression = _with_derivatives_taken(expression)
         symbols, functions = symbols_and_functions(expression)
