@@ -333,3 +333,17 @@ def test_doors_for_symbols_say_that_a_function_of_time_is_none(asked, message):
     assert type(x).__module__ is None
     with pytest.raises(TypeError, match=message):
         asked(x, p)
+
+
+@pytest.mark.parametrize("clock", [time, TAU])
+def test_a_derivative_of_a_symbol_by_the_time_is_no_rate(clock):
+    """The kinetic energy would be lost, as x is a constant in it; a field V(x, t) is derived by the time alone."""
+    x, V = coordinates("x"), sp.Function("V")
+    for moving in (x, l * sp.sin(x), x * V(x, clock)):
+        written = sp.Derivative(moving, clock)
+        with pytest.raises(ValueError, match=r"takes the symbol x for a constant: write its rate as x\.dot"):
+            Lagrangian(m * written**2 / 2, [x])
+    assert x.dot**2 / 2 - V(x, time).diff(time) == Lagrangian(x.dot**2 / 2 - V(x, clock).diff(clock), [x]).L
+    assert Lagrangian(x.dot**2 / 2 - sp.Derivative(a * clock**2, clock) * x, [x]).equations[0].doit() == (
+        acceleration(x) + 2 * a * time
+    )
