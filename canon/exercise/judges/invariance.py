@@ -121,9 +121,9 @@ def _generated(reading: Reading) -> Iterator[Question]:
 
     Σ dq∧dp = Σ dQ∧dP in the variables of F is invariance of Lagrange's brackets, and for a regular map of the rest.
     """
-    number = int(reading.claim.keys["type"])
-    if number not in (1, 2, 3, 4):
+    if reading.claim.keys["type"] not in (1, 2, 3, 4):
         reading.fault("type", "should be 1, 2, 3 or 4")
+    number = int(reading.claim.keys["type"])
     q, p = reading.phase_space("q", "p")
     Q, P = reading.phase_space("new_q", "new_p")
     if len(Q) != len(q):

@@ -9,6 +9,7 @@ Synthesis, § 2.7). A linear system with a rational H is passive exactly where H
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING, cast
 
@@ -45,7 +46,7 @@ class _Fault:
 
 def positive_real(reading: Reading) -> Iterator[Question]:
     """H is positive real for all values of the parameters, or for none."""
-    words = reading.claim.keys["is"]
+    words = reading.words("is")
     for i, word in enumerate(words):
         if word not in _WORDS:
             reading.fault(f"is[{i}]", f"should be one of {', '.join(_WORDS)}")
@@ -96,9 +97,14 @@ def _judged(above: sp.Poly, below: sp.Poly, s: Symbol, off: OffKinks, *, negated
             return _refuted(point, fault, str(s))
         if not parameters:
             return Verdict(Status.HOLDS, certificate="exact")
-    proved = _never(above, below, off.domain) if negated else _always(above, below, off.domain)
-    if proved:
+    always, never = (partial(proof, above, below, off.domain) for proof in (_always, _never))
+    if never() if negated else always():
         return Verdict(Status.HOLDS, certificate="exact")
+    if always() if negated else never():
+        why = "H is positive real" if negated else "Re H(jω) < 0 for some ω"
+        return Verdict(Status.FAILS, certificate="exact", feedback=why)
+    if not parameters:
+        raise Undecided("H holds numbers that are not rational; write names for them, and say their signs")
     raise Undecided(
         f"no counterexample at {POINTS} values of the parameters, and no proof for all of them; "
         "say their signs, or give some of them as numbers"
@@ -175,8 +181,6 @@ def _isolated(f: sp.Poly) -> list[tuple[Expr, Expr]]:
 
 def _is_hurwitz(f: sp.Poly) -> bool:
     """Tell whether all zeros have Re s < 0, by Routh's array; a zero in its first column says no."""
-    if f.is_zero:
-        return False
     top, next_ = _coefficients(f)[::2], _coefficients(f)[1::2]
     sign = sp.sign(top[0])
     for _ in range(int(f.degree())):
@@ -198,10 +202,7 @@ def _always(above: sp.Poly, below: sp.Poly, domain: Domain) -> bool:
 
 def _never(above: sp.Poly, below: sp.Poly, domain: Domain) -> bool:
     """Prove Re H(jω) < 0 at ω → 0 or at ω → ∞, for all values of the parameters."""
-    real = _real_part(above, below)
-    if real.is_zero:
-        return False
-    signs = [proved_sign(c, domain) for c in _coefficients(real)]
+    signs = [proved_sign(c, domain) for c in _coefficients(_real_part(above, below))]
     return "-" in (signs[0], signs[-1])
 
 

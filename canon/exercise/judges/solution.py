@@ -43,6 +43,8 @@ def solution(reading: Reading) -> Iterator[Question]:
     """The claimed motion satisfies the equations and the initial values, and is general if constants are named."""
     if reading.has("solution") and reading.has("rates"):
         reading.fault("rates", "give solution or rates, not both")
+    if reading.has("equations") and not reading.has("q"):
+        reading.fault("equations", "are in the coordinates q; declare them")
     yield from _of_functions(reading) if reading.has("solution") else _of_rates(reading)
 
 
@@ -175,8 +177,6 @@ def _ordered(state: Mapping[Symbol, Expr]) -> list[Symbol]:
 def _equations(reading: Reading, motion: Mapping[Symbol, Expr]) -> list[tuple[str, Expr]]:
     """Return what should vanish on the motion."""
     if reading.has("equations"):
-        if not reading.has("q"):
-            reading.fault("equations", "are in the coordinates q; declare them")
         return [(f"equation {i + 1}", e) for i, e in enumerate(reading.equations("equations"))]
     if _second_order(reading):
         q = reading.symbols("q")

@@ -120,9 +120,6 @@ def _check_constants(reading: Reading, H: Expr, constants: Sequence[Symbol]) -> 
         reading.fault(
             "constants", f"{inside[0]} stands in H, so it is a parameter and no constant of integration"
         )
-    repeated = [str(c) for c in constants if constants.count(c) > 1]
-    if repeated:
-        reading.fault("constants", f"{repeated[0]} is named twice")
 
 
 def _energy(reading: Reading, constants: Sequence[Symbol]) -> Expr:
