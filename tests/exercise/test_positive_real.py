@@ -95,3 +95,46 @@ def test_a_lag_is_passive_up_to_the_sum_of_its_poles():
     assert said("positive-real", **keys, domain=["c <= a + b"], **{"is": ["passive"]}) == "holds"
     assert said("positive-real", **keys, domain=["c > a + b"], **{"is": ["passive"]}) == "fails"
     assert said("positive-real", **keys, domain=["c > a + b"], **{"is": ["not passive"]}) == "holds"
+
+
+def test_one_word_is_a_list_of_one():
+    keys = {"variables": ["s"], "H": "1/(s + 1)"}
+    assert said("positive-real", **keys, **{"is": "passive"}) == "holds"
+    assert said("positive-real", **keys, **{"is": "not passive"}) == "fails"
+    assert said("positive-real", **keys, **{"is": "active"}) == "invalid"
+
+
+@pytest.mark.parametrize(("H", "domain", "passive"), [
+    # Re H has the sign of w² − (3 − c) w + 2 with w = ω², which is negative somewhere where 3 − c > 2√2: c < 0.17157…
+    ("(s**2 + 0.1715*s + 1)/(s**2 + s + 2)", [], "fails"),
+    ("(s**2 + 0.1716*s + 1)/(s**2 + s + 2)", [], "holds"),
+    ("(s**2 + c*s + 1)/(s**2 + s + 2)", ["c <= 1/6"], "fails"),
+    ("(s**2 + c*s + 1)/(s**2 + s + 2)", ["c >= 1/5", "c <= 4"], "holds"),
+    ("1/(s + sqrt(2))", [], "holds"),  # numbers that are not rational, which no polynomial over ℚ has
+    ("1/(s - sqrt(2))", [], "fails"),
+    ("(2*s + 1)/(s**2 + s + sqrt(2))", [], "holds"),
+    ("(s + 2)/(s**2 + s + sqrt(2))", [], "fails"),  # Re: 2√2 − ω²
+    ("1/(s + 1 + cos(a))", [], "holds"),
+    ("1/(s - 2 + cos(a))", [], "fails"),
+    ("1/(s + cos(a))", [], "undecided"),  # it is for some values of a
+    ("-1/(b*s + b)", [], "holds"),
+    ("1/(b*s + b)", [], "fails"),
+    ("-1/(b*s)", [], "holds"),
+])  # fmt: skip
+def test_what_is_passive_for_all_values_is_not_passive_for_none(H, domain, passive):
+    keys = {
+        "variables": ["s"],
+        "H": H,
+        "domain": domain,
+        "parameters": declared("a:real b:negative c:positive"),
+    }
+    opposite = {"holds": {"fails"}, "fails": {"holds", "undecided"}, "undecided": {"undecided"}}[passive]
+    assert said("positive-real", **keys, **{"is": ["passive"]}) == passive
+    assert said("positive-real", **keys, **{"is": ["not passive"]}) in opposite
+
+
+def test_numbers_that_leave_a_transfer_function_undecided_are_told():
+    found = verdict(
+        "positive-real", variables=["s"], H="(s**2 + sqrt(2))/(s**2 + s + 1)", **{"is": ["passive"]}
+    )
+    assert "write names for them" in found.evidence[0].text
