@@ -17,19 +17,24 @@ from canon.expression.text.notation import is_latex
 from canon.expression.text.tokens import LanguageError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from sympy import Expr
 
     from canon.expression.text.scope import Scope
 
+    _Quantity = tuple[int, int, str, Measure]
+
 __all__ = ["calculated"]
 
+_TIMES = r"(?:\s?[*·⋅/]\s?|\s)"
+_NEXT = rf"(?:{_TIMES}{UNIT}|\s?/\s?\({UNIT}(?:{_TIMES}{UNIT}){{0,3}}\))"
+"""One more unit, or several below a stroke, ``/(kg K)``."""
 _QUANTITY = re.compile(
     rf"(?<![\w.])(?P<number>[0-9]+(?:\.[0-9]*)?(?:[eE][+-]?[0-9]+)?)\s?"
-    rf"(?:(?P<unit>{UNIT}(?:(?:\s?[*·⋅/]\s?|\s){UNIT}){{0,4}})|\[(?P<bracket>[^\[\]]{{1,40}})\])(?![\w(])"
+    rf"(?:(?P<unit>{UNIT}{_NEXT}{{0,4}})|\[(?P<bracket>[^\[\]]{{1,40}})\])(?![\w(])"
 )
-_LAST = re.compile(rf"(?:\s?[*·⋅/]\s?|\s){UNIT}$")
+_LAST = re.compile(rf"{_NEXT}$")
 _MOST = 20
 """Quantities in one calculation."""
 
@@ -64,8 +69,23 @@ def calculated(text: str, scope: Scope) -> tuple[str, str] | None:
         pieces += (text[at:start], f"({number}*Unit_{i})")
         at = end
     formula = "".join((*pieces, text[at:]))
-    said = parse_expression(formula, replace(scope, names={**scope.names, **names}))
+    try:
+        said = parse_expression(formula, replace(scope, names={**scope.names, **names}))
+    except LanguageError:
+        _check_without_units(text, quantities, scope)
+        raise
     return _in_bases(text, sp.expand(said.xreplace(put)), bases)
+
+
+def _check_without_units(text: str, quantities: Sequence[_Quantity], scope: Scope) -> None:
+    """Raise the error that a text has where a number stands for each quantity, at its column."""
+    plain = text
+    for start, end, _, _ in quantities:
+        plain = f"{plain[:start]}{'1'.rjust(end - start)}{plain[end:]}"
+    try:
+        parse_expression(plain, scope)
+    except LanguageError as error:
+        raise error.at_home_in(text) from None
 
 
 def _in_bases(text: str, value: Expr, bases: dict[str, sp.Dummy]) -> tuple[str, str]:
@@ -82,15 +102,22 @@ def _in_bases(text: str, value: Expr, bases: dict[str, sp.Dummy]) -> tuple[str, 
     return str(number), unit or "1"
 
 
-def _quantities(text: str, scope: Scope) -> Iterator[tuple[int, int, str, Measure]]:
+def _is_declared(unit: str, scope: Scope) -> bool:
+    letters = re.findall(r"[A-Za-zΩµμ]+", unit)
+    return any(word in scope.functions or scope.declares(word) for word in letters)
+
+
+def _quantities(text: str, scope: Scope) -> Iterator[_Quantity]:
     """Yield where each number with a unit begins and ends, the number and what its unit measures."""
     for found in _QUANTITY.finditer(text):
         unit, end = found["unit"] or found["bracket"], found.end()
         measure = measure_of(unit)
-        while measure is None and found["unit"] and (shorter := _LAST.sub("", unit)) != unit:
+        while (
+            (measure is None or (unit.endswith(")") and _is_declared(unit, scope)))
+            and found["unit"]
+            and (shorter := _LAST.sub("", unit)) != unit
+        ):
             end -= len(unit) - len(shorter)
             unit, measure = shorter, measure_of(shorter)
-        letters = re.findall(r"[A-Za-zΩµμ]+", unit)
-        declared = any(word in scope.functions or scope.declares(word) for word in letters)
-        if measure is not None and not declared and not measure.hertz and not measure.counted_in:
+        if measure is not None and not _is_declared(unit, scope) and not measure.hertz and not measure.counted_in:
             yield found.start(), end, found["number"], measure

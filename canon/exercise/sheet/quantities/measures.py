@@ -57,7 +57,7 @@ _MOST = 80
 _LONGEST = 2_000
 """Characters of an answer in which a unit is looked for."""
 _SYMBOL = re.compile(
-    r"(?P<name>[A-Za-zµμΩ]+|°|%|1)(?:(?:\^|\*\*)?(?P<power>[({]?[-−]?[0-9]{1,2}[)}]?)|(?P<raised>⁻?[¹²³⁴⁵⁶]{1,3}))?"
+    r"(?P<name>[A-Za-zµμΩ]+|°|%|1)(?:(?:\^|\*\*)?(?P<power>\([-−]?[0-9]{1,2}\)|\{?[-−]?[0-9]{1,2}\}?)|(?P<raised>⁻?[¹²³⁴⁵⁶]{1,3}))?"
     r"|(?P<sign>.)",
     re.DOTALL,
 )
