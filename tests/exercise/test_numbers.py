@@ -23,6 +23,7 @@ def judged(**keys):
 
 TWO = {"value": ["1 + sqrt(2)", "1 - sqrt(2)"], "complete": True}
 SPEED = {"value": "10", "unit": "m/s"}
+HEAT = {"value": "4186", "unit": "J/(kg K)"}
 HOLD = [
     ({"value": "10/17", "tolerance": "0.0005"}, "0.588", "0.587"),
     ({"value": "10/17", "tolerance": "0.0005"}, "≈ 0.588", "≈ 0.598"),
@@ -38,6 +39,12 @@ HOLD = [
     (TWO, r"$x \in \{1 - \sqrt 2, 1 + \sqrt 2\}$", r"$x \in \{1 - \sqrt 2, 2 + \sqrt 2\}$"),
     (TWO, ["1 ∓ √2"], ["√2 ∓ 1"]),
     (SPEED, "36 km/h", "36 m/s"),
+    (HEAT, "4186 J/(kg K)", "4186 J/(kg K^2)"),
+    (HEAT, "4.186 kJ/(kg·K)", "4.186 kJ/(kg·m)"),
+    (HEAT, "2 * 2093 J/(kg K)", "2 * 2093 J/(g K)"),
+    (HEAT, "4186 m²/(s^2 K)", "4186 m/(s^2 K)"),
+    (SPEED, "20 m/(2 s)", "20 m/(3 s)"),
+    (SPEED, "5 s * 2 m/(s^2)", "5 s * 2 m/(s)"),
     (SPEED, "10", "36"),
     (SPEED, "10 [m/s]", "10 [m]"),
     (SPEED, r"$10\,\mathrm{m\,s^{-1}}$", r"$10\,\mathrm{m\,s^{-2}}$"),
@@ -116,7 +123,52 @@ def test_units_have_the_factors_of_the_si_brochure(unit, same):
     assert sp.simplify(left.factor - factor * right.factor) == 0
 
 
-@pytest.mark.parametrize("unit", ["furlong", "J/kg K", "m^", "", "mm2mm", "x" * 200, "kkg"])
+def test_a_letter_below_a_stroke_is_a_parameter_where_it_is_declared_as_one():
+    keys = {
+        "value": "F/m",
+        "unit": "N",
+        "given": {"F": "6", "m": "2"},
+        "parameters": {"F": "real", "m": "positive"},
+    }
+    assert judged(**keys, claim="6 N/(m)").status == "holds"
+    assert judged(**keys, claim="7 N/(m)").status == "fails"
+    assert judged(value="6", unit="N/m", claim="6 N/(m)").status == "holds"
+
+
+@pytest.mark.parametrize(
+    ("claim", "column", "wrong"), [("2 m foo * 3 s", 5, "foo"), ("2 m * 3 s * bar", 13, "bar")]
+)
+def test_what_is_wrong_in_a_calculation_with_units_is_told_in_its_own_words(claim, column, wrong):
+    found = judged(value="6", unit="m s", claim=claim)
+    assert found.status == "invalid"
+    assert f"column {column}: {wrong} is not declared; no names are declared here\n{claim}" in found.known
+
+
+def test_values_are_held_against_conditions_that_they_decide():
+    keys = {"value": "m", "claim": "2", "given": {"m": "2"}, "parameters": {"m": "real", "x": "real"}}
+    assert judged(**keys, domain=["m*x > -1"]).status == "holds"  # x has no value
+    assert judged(**keys, domain=["m > 1"]).status == "holds"
+    told = judged(**keys, domain=["m > 1", "m > 2"])
+    assert told.status == "invalid"
+    assert told.known == "key given: condition 2 of the domain, m > 2, is false for these values"
+
+
+@pytest.mark.parametrize(
+    ("condition", "status"), [(">=", "holds"), ("<=", "holds"), (">", "invalid"), ("<", "invalid")]
+)
+def test_a_value_at_the_end_of_its_domain_is_told_apart_from_one_outside(condition, status):
+    keys = {
+        "value": "m",
+        "claim": "√2 + √3",
+        "given": {"m": "sqrt(2) + sqrt(3)"},
+        "parameters": {"m": "positive"},
+    }
+    assert judged(**keys, domain=[f"m {condition} sqrt(5 + 2*sqrt(6))"]).status == status
+
+
+@pytest.mark.parametrize(
+    "unit", ["furlong", "J/kg K", "J/(kg K", "J/kg)", "(m/s)^2", "m^", "", "mm2mm", "x" * 200, "kkg"]
+)
 def test_what_is_no_unit_is_none(unit):
     assert measure_of(unit) is None
 
