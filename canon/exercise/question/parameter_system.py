@@ -136,7 +136,7 @@ def _completed(search: _Search, family: Family, rounds: int) -> Iterator[Family]
     free = [s for s in search.wanted if s not in family]
     solved = _next_step(search, left, free, domain, rounds)
     for number, step in enumerate(solved):
-        if number > MOST_FAMILIES:
+        if number >= MOST_FAMILIES:
             raise Undecided(f"more than {MOST_FAMILIES} cases of the parameters; narrow the domain")
         known = {s: substitute(value, step) for s, value in family.items()} | step
         if any(value.has(sp.nan, sp.zoo, sp.oo, -sp.oo) for value in known.values()):

@@ -119,5 +119,10 @@ def _quantities(text: str, scope: Scope) -> Iterator[_Quantity]:
         ):
             end -= len(unit) - len(shorter)
             unit, measure = shorter, measure_of(shorter)
-        if measure is not None and not _is_declared(unit, scope) and not measure.hertz and not measure.counted_in:
+        if (
+            measure is not None
+            and not _is_declared(unit, scope)
+            and not measure.hertz
+            and not measure.counted_in
+        ):
             yield found.start(), end, found["number"], measure
