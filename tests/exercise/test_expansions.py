@@ -7,8 +7,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from canon.exercise.claim_verdict import judge
-from canon.exercise.question.series_expansion import coefficient, coefficients
+from canon.exercise.question.series_expansion import check_analytic, coefficient, coefficients
 from canon.exercise.sheet.sheet import Claim
+from canon.expression.symbols.jacobi_functions import jacobi_sn
+from canon.proof.domain.domain import Domain
+from canon.proof.domain.verdict import Undecided
 
 NAMES = dict.fromkeys(("m", "x", "A"), "real") | dict.fromkeys(("a", "l", "g"), "positive")
 PERIOD = "4*sqrt(l/g)*elliptic_k(sin(A/2)**2)"
@@ -108,3 +111,31 @@ def test_the_square_of_what_may_be_zero_has_no_quotient():
     """At x = 1 the first coefficient of the base is 0; (x − 1 + e)² is a polynomial there too."""
     assert coefficients((x - 1 + e) ** 2, e, 2) == [(x - 1) ** 2, 2 * x - 2, 1]
     assert coefficients((x - 1 + e) ** 20, e, 1)[1].subs(x, 1) == 0
+
+
+z, b = sp.Symbol("z", real=True), sp.Symbol("b", positive=True)
+UP_TO_THREE = Domain((b < 3,))
+
+
+@pytest.mark.parametrize(("analytic", "singular"), [
+    (sp.cot(z + b), sp.cot(z)),
+    (sp.csc(b - z), sp.csc(b * z)),
+    (jacobi_sn(z, b), jacobi_sn(z + sp.I, b)),  # poles where the imaginary part is K(1 − m)
+    (sp.atan2(z, z + b), sp.atan2(z, z - b)),  # the cut along the negative axis
+    (sp.atan2(z + b, z - b), sp.atan2(z, z)),
+])  # fmt: skip
+def test_functions_are_expanded_where_they_are_analytic_and_nowhere_else(analytic, singular):
+    check_analytic(analytic, {z: sp.S.Zero}, UP_TO_THREE)
+    with pytest.raises(Undecided, match="is not certainly analytic there"):
+        check_analytic(singular, {z: sp.S.Zero}, UP_TO_THREE)
+
+
+def test_coefficients_of_powers_whose_exponent_is_small():
+    assert coefficients(b ** (z + 1), z, 2) == [b, b * sp.log(b), b * sp.log(b) ** 2 / 2]
+    assert coefficients(jacobi_sn(z, b), z, 3) == [0, 1, 0, -(1 + b) / 6]  # DLMF 22.10.4
+
+
+@pytest.mark.parametrize("f", [sp.sqrt(z), z**z, z ** sp.Rational(5, 3)])
+def test_what_has_no_expansion_in_whole_powers_is_told(f):
+    with pytest.raises(Undecided, match="is not finite, so this is no expansion in whole powers"):
+        coefficients(f, z, 2)
