@@ -98,8 +98,6 @@ def _of_polynomials(form: Sequence[Expr], z: Sequence[Symbol]) -> Expr | None:
             poly = sp.Poly(a, *z)
         except sp.PolynomialError:
             return None
-        if any(c.has(*z) for c in poly.coeffs()):
-            return None
         for powers, c in poly.terms():
             terms.append(c * x * sp.Mul(*(s**k for s, k in zip(z, powers, strict=True))) / (sum(powers) + 1))
     return sp.Add(*terms)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, cast
 
 from sympy import Expr
@@ -86,7 +87,10 @@ def _of_component(key: str, text: str, reading: Reading) -> str:
     if whole in EQUATIONS and whole not in reading.kind.components:
         return f"{text} = 0"
     name = whole.rpartition(".")[2]
-    alone = not number or (reading.has(whole) and len(reading.words(whole)) == 1)
+    key, _, part = whole.partition(".")
+    value = reading.claim.keys.get(key)
+    entries = value[part] if part and isinstance(value, Mapping) else value
+    alone = not number or not isinstance(entries, list) or len(entries) == 1
     return f"{name if alone else f'{name}{int(number) + 1}'} = {text}"
 
 
