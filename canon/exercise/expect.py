@@ -108,6 +108,6 @@ def _written_by_sympy(value: Any, q: list[str]) -> Any:
     if isinstance(value, sp.Expr):
         clocked = q and value.has(AppliedUndef)
         return str(plain(value, [coordinates(name) for name in q]) if clocked else value)
-    if isinstance(value, list | tuple):
-        return [_written(item, q) for item in value]
+    if isinstance(value, sp.And | sp.Or):
+        return f"{type(value).__name__}({', '.join(_written(each, q) for each in value.args)})"
     return str(value)

@@ -64,6 +64,8 @@ def _right_parts(finding: Finding, question: Same) -> str:
         return ""
     forms = _Forms(question.domain)
     parts = [p for p in question.parts if not p.through and p.residual != 0]
+    if finding.reading.kind.two_sided:  # the left side is given, the right side is the answer
+        return "; ".join(f"rhs = {shown(forms.best(p.claimed))}" for p in parts)
     return "; ".join(f"{p.name} = {shown(forms.best(p.right))}" for p in parts[:MOST_SENTENCES])
 
 

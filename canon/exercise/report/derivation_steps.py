@@ -66,8 +66,6 @@ def _slopes(reading: Reading) -> Iterator[Step]:
         reading.has(key) for key in ("q", "p", "H")
     ):
         return
-    if not reading.is_names("q"):
-        return
     name = "L" if reading.has("L") else "H"
     f, q = reading.expression(name), reading.symbols("q")
     if not shown(f) or len(q) > MOST_PARTS // 2:
