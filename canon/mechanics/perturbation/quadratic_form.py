@@ -9,7 +9,7 @@ Rows are never divided by roots, so coefficients stay in the field of the eigenv
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 import sympy as sp
 from sympy import Expr
@@ -88,8 +88,12 @@ def characteristic_exponents(hessian: sp.MatrixBase) -> list[tuple[Expr, int]]:
     square = sp.Dummy("lambda2")
     line = sp.Dummy("lambda")
     J = sp.Matrix(sp.BlockMatrix([[sp.zeros(n), sp.eye(n)], [-sp.eye(n), sp.zeros(n)]]))
-    powers = (J * hessian).charpoly(line).all_coeffs()[::2]  # the odd ones are zero
-    even = sp.Poly(powers, square)
+    # SymPy's charpoly sorts factors, which it can't where their coefficients hold functions
+    names = {f: sp.Dummy() for f in hessian.atoms(sp.Function)}
+    named = sp.Matrix(hessian).xreplace(names)
+    powers = (J * named).charpoly(line).all_coeffs()[::2]  # the odd ones are zero
+    functions = {name: f for f, name in names.items()}
+    even = sp.Poly([power.xreplace(functions) for power in powers], square)
     found = sp.roots(even, multiple=False)
     if sum(found.values()) < n:
         remedy = (
@@ -102,7 +106,7 @@ def characteristic_exponents(hessian: sp.MatrixBase) -> list[tuple[Expr, int]]:
 
 
 def _root(mu: Expr) -> Expr:
-    mu = sp.factor(sp.radsimp(mu)) if mu.free_symbols else sp.radsimp(mu)
+    mu = cast("Expr", sp.factor(sp.radsimp(mu)) if mu.free_symbols else sp.radsimp(mu))
     if mu.is_zero:
         raise NoDiagonalFormError(
             "an exponent is zero: the equilibrium is not isolated, or the pair is parabolic; "
