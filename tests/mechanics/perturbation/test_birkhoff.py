@@ -363,3 +363,17 @@ def test_norms_need_numbers_and_radii_of_each_pair():
 def test_nothing_is_left_of_an_oscillator_at_any_order():
     found = optimal_order(birkhoff_normal_form(one(WELL), 5), 0.1)
     assert (found.order, found.norm, found.reached) == (5, 0.0, False)
+
+
+@pytest.mark.parametrize("f", [sp.exp, lambda b: sp.sin(b) ** 2 + 1, sp.cosh])
+def test_functions_among_the_frequencies_are_refused_and_parameters_in_their_place_are_not(f):
+    a, b = sp.symbols("a b", positive=True)
+
+    def with_strength(k):
+        return two(a * x**2 / 2 + k * y**2 / 2 + x**2 * y**2, (a * px**2 + k * py**2) / 2)
+
+    with pytest.raises(NoExactFieldError, match="write a parameter for it"):
+        birkhoff_normal_form(with_strength(f(b)), 4)
+    form = birkhoff_normal_form(with_strength(b), 4)
+    I, J = form.actions
+    assert any(sp.expand(form.in_actions() - a * A - b * B - A * B) == 0 for A, B in ((I, J), (J, I)))
