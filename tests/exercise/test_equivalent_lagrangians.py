@@ -42,3 +42,19 @@ def test_another_force_is_another_motion(L2, domain):
 def test_what_has_no_value_at_rest_is_not_said_to_be_without_steps():
     L = "x*x_dot*log(x_dot)"
     assert judged(f"{L} + x_dot", ["x_dot > 0"], L1=L).undecided
+
+
+@pytest.mark.parametrize("relation", ["gauge", "equations"])
+@pytest.mark.parametrize(("first", "second", "status"), [
+    ("0", "sign(x - t)", "fails"),  # a step of the potential that moves kicks what it meets
+    ("sign(x - t)", "sign(x + t) + x*x_dot", "fails"),
+    ("sign(x - t)", "sign(x - t) + x*x_dot", "holds"),
+    ("0", "sign(t - 1)", "holds"),  # a step at one time, in all places alike, kicks nothing
+    ("0", "abs(t - 1)*x_dot + x*sign(t - 1)", "holds"),  # d(x |t − 1|)/dt
+    ("0", "abs(t - 1)*x_dot - x*sign(t - 1)", "fails"),
+    ("0", "2*abs(x - t)*sign(x - t)*(x_dot - 1)", "holds"),  # d((x − t) |x − t|)/dt
+    ("0", "sign(x - t)*(x_dot - 1)", "undecided"),  # d|x − t|/dt
+])  # fmt: skip
+def test_a_step_that_moves_is_no_gauge_term(relation, first, second, status):
+    keys = {"q": ["x"], "relation": relation, "L1": f"x_dot**2/2 + {first}", "L2": f"x_dot**2/2 + {second}"}
+    assert judge(Claim("a", "lagrangian-equivalence", keys)).status.value == status
