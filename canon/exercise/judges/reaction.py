@@ -7,6 +7,7 @@ with their values, such as the energy of a start from rest: the motions meant ar
 from __future__ import annotations
 
 import time
+from itertools import product
 from typing import TYPE_CHECKING, cast
 
 import sympy as sp
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
     from canon.mechanics.algebra.constraint_manifold import Branch
     from canon.mechanics.lagrange.lagrangian import Lagrangian
     from canon.mechanics.reduction.constrained_motion import MotionOnManifold
+    from canon.proof.domain.domain import Domain
 
 __all__ = ["leaving_condition", "reaction"]
 
@@ -257,6 +259,18 @@ def _valued_at_zeros(
             if lack.proved:
                 yield fails("the equation has a value", sentence)
             yield Verdict(Status.UNDECIDED, evidence=(Evidence("open", sentence),))
+        elif risk := _lacking_at_one_place(there, b.domain):
+            sentence = f"the equation has no value at one of the places where the reaction vanishes: {risk}"
+            yield Verdict(Status.UNDECIDED, evidence=(Evidence("open", sentence),))
+
+
+def _lacking_at_one_place(there: Expr, domain: Domain) -> str:
+    """Say what has no value at the first of the places that a whole number counts, as at θ = c of θ = c + 2π n."""
+    for s, n in product((s for s in symbols_of(there) if s.is_integer), range(-2, 3)):
+        for risk in hazards(anatomy([put_in(there, {s: sp.Integer(n)})]).parts):
+            if vanishes_off_kinks(risk.argument, domain, SIDE_SECONDS).holds:
+                return str(risk)
+    return ""
 
 
 def _follows(
