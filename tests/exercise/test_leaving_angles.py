@@ -139,3 +139,16 @@ def test_an_even_power_of_the_sine_is_one_of_the_cosine() -> None:
     angle = math.acos((3 - math.sqrt(17)) / 2)
     values = sorted(float(root.value) for root in found if root.value.is_real)
     assert values == pytest.approx([angle, 2 * math.pi - angle], abs=1e-12)
+
+
+@pytest.mark.parametrize(("divisor", "status"), [
+    ("th - acos(2/3)", "undecided"),  # at the very place
+    ("th - 2*pi - acos(2/3)", "undecided"),
+    ("th**2 - acos(2/3)**2", "undecided"),
+    ("3*cos(th) - 2", "fails"),  # at all of them
+    ("th - acos(1/3)", "holds"),
+    ("th", "holds"),
+])  # fmt: skip
+def test_an_equation_without_a_value_at_a_place_of_leaving_is_not_accepted(divisor, status):
+    above = "(3*cos(th) - 2)**2" if status == "fails" else "(3*cos(th) - 2)"
+    assert told(SPHERE, f"{above}/({divisor}) = 0").status.value == status
