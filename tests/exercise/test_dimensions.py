@@ -9,10 +9,15 @@ import sympy as sp
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from canon.exercise.diagnose.repairs.impossible_dimension import impossible_dimensions
+from canon.exercise.question.declared_dimensions import declared_dimensions
 from canon.exercise.question.expression_dimension import analysed, dimension_of
+from canon.exercise.question.question import Part
 from canon.exercise.sheet.quantities.dimension_texts import NUMBER, Dimension, DimensionError, dimension_from
-from canon.exercise.sheet.sheet import SheetError, read_sheet
+from canon.exercise.sheet.reading import Reading
+from canon.exercise.sheet.sheet import SheetError, claim_from, read_sheet
 from canon.exercise.sheet_check import check
+from canon.proof.domain.domain import EVERYWHERE
 
 BASES = (length, mass, time) = sp.symbols("length mass time", positive=True)
 angle, unknown = sp.symbols("angle unknown", positive=True)
@@ -322,3 +327,58 @@ def test_what_is_told_stands_in_the_json_and_on_the_page():
     assert "has the dimension of force" in json.loads(report.to_json())["claims"][0]["feedback"]
     assert "has the dimension of force" in report.to_html()
     assert "has the dimension of force" in str(report)
+
+
+def test_moduli_signs_products_with_zero_and_slopes():
+    f = sp.Function("f")
+    known = {**KNOWN, "f": KNOWN["mass"]}
+    assert dimension_of(mass * sp.Abs(length - 2 * length, evaluate=False), known) == dimension_from(
+        "mass*length"
+    )
+    assert dimension_of(mass * sp.sign(length - 1, evaluate=False), known) == dimension_from("mass")
+    nothing = sp.Mul(0, mass, evaluate=False)
+    assert analysed(sp.Add(length, nothing, evaluate=False), known) == ()
+    assert len(analysed(sp.Add(length, mass, evaluate=False), known)) == 1
+    assert dimension_of(f(length).diff(length), known) == dimension_from("mass/length")
+    assert dimension_of(f(unknown).diff(unknown), known) is None
+
+
+TWO = {
+    "q": ["x", "y"], "p": ["px", "py"], "L": "m*x_dot**2/2 + m*y_dot**2/2", "parameters": {"m": "positive"},
+}  # fmt: skip
+
+
+def test_momenta_have_dimensions_where_their_coordinates_have():
+    def known(**more):
+        return declared_dimensions(
+            Reading(claim_from({"id": "a", "kind": "legendre-hamiltonian", **TWO, **more}))
+        )
+
+    assert known() == {}
+    one = known(dimensions={"m": "mass", "x": "length"})
+    assert (one["px"], "py" in one) == (dimension_from("momentum"), False)
+    assert known(dimensions={"m": "mass", "x": "length", "y": "length"})["py"] == dimension_from("momentum")
+
+
+def test_what_may_vanish_is_not_told_to_be_impossible():
+    keys = {"H": "px", "dimensions": {"m": "mass", "x": "length", "y": "length"}}
+    reading = Reading(claim_from({"id": "a", "kind": "legendre-hamiltonian", **TWO, **keys}))
+    one = sp.sin(sp.S.One) ** 2 + sp.cos(sp.S.One) ** 2
+    m, p = (reading.scope.names[name] for name in ("m", "px"))
+
+    def told(claimed, right, key="H"):
+        answered = reading.with_instead("H", claimed)
+        return [
+            change.mistake.name
+            for change in impossible_dimensions(
+                answered, (Part("H", claimed, right, key=key),), EVERYWHERE, 3
+            )
+        ]
+
+    energy = p**2 / m
+    assert told(energy + m, energy) == ["TERMS_OF_OTHER_DIMENSION"]
+    assert told(energy + m * (one - 1), 2 * energy) == []  # no term at all
+    assert told(energy, energy) == []
+    assert told(energy + m, energy, key="") == ["TERMS_OF_OTHER_DIMENSION"]  # what is right is not known
+    assert told(p, energy) == ["DIMENSION_OF_ANSWER"]
+    assert told(energy * sp.sin(reading.scope.names["x"]), energy) == ["NO_NUMBER"]
