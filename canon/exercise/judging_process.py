@@ -13,6 +13,7 @@ import gc
 import json
 import sys
 import time
+from collections.abc import Mapping
 from dataclasses import replace
 from decimal import Decimal
 from typing import TYPE_CHECKING, Any
@@ -211,7 +212,7 @@ def _encoded(claim: Claim) -> bytes:
 def _plain(value: Any) -> Any:
     if isinstance(value, Decimal):
         return {"decimal": str(value)}
-    return str(value)
+    return dict(value) if isinstance(value, Mapping) else str(value)
 
 
 def _decoded(message: bytes) -> Claim:
