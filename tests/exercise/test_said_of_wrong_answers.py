@@ -91,6 +91,8 @@ SAID = [
     ("generating-first-order", {**ANGLE, "new_p": ["P"], "F2": "-theta*P - eps*sin(theta)"},
      {"F2": "theta*P - eps*sin(theta)"},
      "right under the opposite sign convention; the convention here is K = H + ε {H, W}, or F2 = Σ q P + ε S", ""),
+    ("hamilton-equations", {**FREE, "q_dot": ["0"], "p_dot": ["p/m"]}, {"q_dot": ["p/m"], "p_dot": ["0"]},
+     "the equations of q and p are exchanged", "p/m; 0"),  # zero has any dimension
     ("solution", {**OSCILLATOR, "solution": {"x": "a*cos(t) + b*sin(2*t)"}}, {"solution": {"x": "a*cos(t) + b*sin(t)"}},
      "in the solution for x sin(2*t) should be sin(t)", "x = a*cos(t) + b*sin(t)"),
     ("legendre-hamiltonian", {**SPRING, "H": "p**2/(2*m) + k*x**2"}, {"H": RIGHT_ENERGY},
@@ -127,6 +129,8 @@ def test_what_is_said_and_what_is_told_as_right(kind, wrong, mended, said, right
     ("hamilton-equations", {**PHASE, "H": "p**2/2 + q**2/2", "q_dot": ["p**3"], "p_dot": ["q*sin(q)"]}, 0.0),
     ("solution", {**OSCILLATOR, "solution": {"x": "a*cos(t) + b*sin(2*t)"}}, 0.5),
     ("constant-of-motion", {**PHASE, "H": "p**2/2 + q**2/2", "I": "p*exp(sin(q))"}, 0.0),
+    ("hamilton-equations", {**PHASE, "H": "p**2/2 + q**2/2", "q_dot": ["-q"], "p_dot": ["p"]}, 0.0),
+    ("canonicity", {**PHASE, "Q": ["2*q"], "P": ["p"]}, 0.5),
 ])  # fmt: skip
 def test_the_share_of_a_wrong_answer_that_is_right(kind, keys, share):
     assert judged(kind, {**keys, "points": 4, "partial": True}).share == share
