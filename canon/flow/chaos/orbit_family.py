@@ -9,7 +9,6 @@ import numpy as np
 
 from canon.expression.symbols.user_input import counted
 from canon.flow.chaos.floquet import near_double
-from canon.flow.chaos.periodic_search import NoPeriodicOrbitError, PeriodicOrbit, PeriodicSearch
 from canon.flow.run.non_finite_state import NonFiniteStateError
 from canon.progress import reporting
 
@@ -19,6 +18,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from canon.array import Array
+    from canon.flow.chaos.periodic_search import PeriodicOrbit, PeriodicSearch
 
 __all__ = ["Bifurcation", "OrbitFamily", "continue_family"]
 
@@ -174,7 +174,7 @@ def _next(
         return None
     try:
         found = search.found(ahead[:-1], float(ahead[-1]), None, across=tangent / sizes)
-    except (NoPeriodicOrbitError, NonFiniteStateError):
+    except (NonFiniteStateError, ValueError):  # beyond H's domain too, where no motion starts
         return None
     gone = np.append(found.y - orbit.y, found.period - orbit.period) / sizes
     distance = float(np.linalg.norm(gone))
