@@ -126,11 +126,12 @@ def newton_euler_motion(given: NewtonEuler, start: Mapping[Symbol, float]) -> Fi
     Raises
     ------
     ValueError
-        The balances leave an unknown open at the start.
+        The balances are not linear in the unknowns, or leave one open at the start.
     """
     graph, unknown, q = Graph(), given.unknowns, given.q
     nodes = [graph.from_sympy(e) for e in given.balances]
     matrix = [graph.gradient(e, unknown) for e in nodes]
+    _check_linear(graph, unknown, matrix)
     values = values_at_start(graph, [a for row in matrix for a in row], start, "the matrix of the balances")
     kept = independent_rows(values.reshape(len(nodes), -1))
     if len(kept) < len(unknown):
@@ -159,6 +160,11 @@ def newton_euler_motion(given: NewtonEuler, start: Mapping[Symbol, float]) -> Fi
     )
 
 
+def _check_linear(graph: Graph, unknown: Sequence[Symbol], matrix: Sequence[Sequence[int]]) -> None:
+    if graph.all_symbols([a for row in matrix for a in row]) & {*unknown}:
+        raise ValueError(f"the equations are not linear in {', '.join(map(str, unknown))}")
+
+
 def _solved(
     graph: Graph,
     unknown: Sequence[Symbol],
@@ -169,8 +175,7 @@ def _solved(
 ) -> tuple[int, ...]:
     """Return the unknowns of equations that are affine in them, each node = 0."""
     matrix = [list(graph.gradient(e, unknown)) for e in nodes]
-    if any(graph.symbols(a) & {*unknown} for row in matrix for a in row):
-        raise ValueError(f"the equations are not linear in {', '.join(map(str, unknown))}")
+    _check_linear(graph, unknown, matrix)
     still = {graph.symbol(s): graph.zero for s in unknown}
     right = [graph.negative(e) for e in graph.substitute(nodes, still)]
     values = values_at_start(graph, [a for row in matrix for a in row], start, "the mass matrix")

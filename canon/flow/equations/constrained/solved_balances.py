@@ -37,20 +37,16 @@ def solved_balances(
     given
         The bodies with their loads.
     balances
-        The nodes of its balances.
+        The nodes of its balances, linear in the unknowns.
     start
         Numbers for the state, t and the parameters.
 
     Raises
     ------
-    ValueError
-        The balances are not linear in the reactions.
     SingularAtStartError
         They do not determine the unknowns there.
     """
     unknown, n = given.unknowns, len(given.q)
-    if any(graph.symbols(a) & {*unknown} for e in balances for a in graph.gradient(e, unknown)):
-        raise ValueError(f"the equations are not linear in {', '.join(map(str, unknown))}")
     weights = [graph.number(w) for w in _weights(graph, given, start)]
     if not given.has_mass_matrix:
         return _least_squares(graph, balances, unknown, weights, start)
