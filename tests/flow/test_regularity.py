@@ -111,12 +111,8 @@ def test_a_spectrum_is_shown_with_its_verdict_and_errors():
 
 def test_a_frequency_that_moves_a_little_is_neither_regular_nor_chaotic():
     """cos(1.25 t + c t²) has the frequency 1.25 + 2 c t, which moves by 1000 c between the middles of the halves."""
-    t = np.linspace(0, 1000, 4001)
-    still, little, far = (frequency_diffusion(t, np.cos(1.25 * t + c * t**2)) for c in (0, 1e-6, 1e-4))
-    assert [each.verdict for each in (still, little, far)] == [
-        Regularity.REGULAR,
-        Regularity.NOT_KNOWN,
-        Regularity.CHAOTIC,
-    ]
+    t = np.linspace(0, 1000, 1001)
+    still, little = (frequency_diffusion(t, np.cos(1.25 * t + c * t**2)) for c in (0, 1e-6))
+    assert (still.verdict, little.verdict) == (Regularity.REGULAR, Regularity.NOT_KNOWN)
     assert still.second == pytest.approx(still.first, abs=1e-12)
     assert little.second - little.first == pytest.approx(1e-3, rel=1e-3)
