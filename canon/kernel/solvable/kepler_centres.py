@@ -29,27 +29,24 @@ class CentresInLanes(BodyLanes):
     w
         Where the loop is written.
     part
-        The bodies, and the rest of H.
+        The bodies, of as many coordinates each, and the rest of H.
     compensated
         Whether round-off is carried along.
     """
 
     def __init__(self, w: Writer, part: Centres, *, compensated: bool) -> None:
         mu = [k / m for k, m in zip(part.attractions, part.masses, strict=True)]
-        super().__init__(w, mu, max(map(len, part.bodies)), 0, compensated=compensated)
+        super().__init__(w, mu, len(part.bodies[0]), 0, compensated=compensated)
         self.part = part
         self.degrees = sum(map(len, part.bodies))
 
     def enter(self, y: str, e: str) -> None:
-        """Write places and velocities; axes that a body does not have are 0."""
-        none = self.pair.constant(Fraction(0))
+        """Write places and velocities."""
         for axis in range(self.axes):
             places, velocities = list[str](), list[str]()
             for own, mass in zip(self.part.bodies, self.part.masses, strict=True):
-                known = axis < len(own)
-                momentum = self.read(y, e, self.degrees + own[axis]) if known else none
-                places.append(self.read(y, e, own[axis]) if known else none)
-                velocities.append(self.combined([1 / mass], [momentum]))
+                places.append(self.read(y, e, own[axis]))
+                velocities.append(self.combined([1 / mass], [self.read(y, e, self.degrees + own[axis])]))
             self.set_bodies(places, str(self.places + axis))
             self.set_bodies(velocities, str(self.velocities + axis))
 
@@ -58,9 +55,8 @@ class CentresInLanes(BodyLanes):
         for axis in range(self.axes):
             places, velocities = (self.bodies(str(first + axis)) for first in (self.places, self.velocities))
             for body, (own, mass) in enumerate(zip(self.part.bodies, self.part.masses, strict=True)):
-                if axis < len(own):
-                    self.write(places[body], y, e, own[axis])
-                    self.write(self.combined([mass], [velocities[body]]), y, e, self.degrees + own[axis])
+                self.write(places[body], y, e, own[axis])
+                self.write(self.combined([mass], [velocities[body]]), y, e, self.degrees + own[axis])
 
     def kicked(self, x: list[str], u: list[str], times: StepLengths) -> tuple[list[str], list[str]]:
         """Write v ← v − t ∂H₁/∂q / m, and with a commutator + 2γτ³ ∂(Σ (∂H₁/∂q)²/2m)/∂q / m."""
@@ -101,15 +97,12 @@ class CentresInLanes(BodyLanes):
     # deviations ------------------------------------------------------------------------------------
 
     def enter_deviation(self, outer: str, inner: str) -> None:
-        """Write δx and δv along each axis; of axes that a body does not have they are 0."""
-        w, none = self.w, self.w.constant(Fraction(0))
+        """Write δx and δv along each axis."""
         for axis in range(self.axes):
             places, velocities = list[str](), list[str]()
             for own, mass in zip(self.part.bodies, self.part.masses, strict=True):
-                known = axis < len(own)
-                places.append(w.load(outer, own[axis]) if known else none)
-                momentum = w.load(outer, self.degrees + own[axis]) if known else none
-                velocities.append(self.summed([1 / mass], [momentum]))
+                places.append(self.w.load(outer, own[axis]))
+                velocities.append(self.summed([1 / mass], [self.w.load(outer, self.degrees + own[axis])]))
             self.set_deviation(places, axis, inner)
             self.set_deviation(velocities, self.axes + axis, inner)
 
@@ -119,9 +112,8 @@ class CentresInLanes(BodyLanes):
         for axis in range(self.axes):
             places, velocities = (self.deviation(first + axis, inner) for first in (0, self.axes))
             for body, (own, mass) in enumerate(zip(self.part.bodies, self.part.masses, strict=True)):
-                if axis < len(own):
-                    self.w.store(places[body], outer, own[axis])
-                    self.w.store(self.summed([mass], [velocities[body]]), outer, self.degrees + own[axis])
+                self.w.store(places[body], outer, own[axis])
+                self.w.store(self.summed([mass], [velocities[body]]), outer, self.degrees + own[axis])
 
     # forces ----------------------------------------------------------------------------------------
 
@@ -160,14 +152,12 @@ class CentresInLanes(BodyLanes):
         return found
 
     def _by_axis(self, forces: Sequence[str], inverse: Sequence[Fraction]) -> list[str]:
-        """Return f/m as vectors over bodies, 0 for axes that a body does not have."""
+        """Return f/m as vectors over bodies."""
         w = self.w
         none, rows = w.constant(Fraction(0)), list[str]()
         for axis in range(self.axes):
             row = [
                 w.algebra("mul", forces[own[axis]], w.constant(inverse[own[axis]]))
-                if axis < len(own)
-                else none
                 for own in self.part.bodies
             ]
             # The lanes left over move on plain orbits.

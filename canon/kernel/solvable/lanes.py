@@ -192,9 +192,7 @@ class BodyLanes:
         return found
 
     def rearranged(self, value: str, order: Sequence[int]) -> str:
-        """Return the vector whose lane i is lane order[i] of another."""
-        if self.lanes == 1:
-            return value
+        """Return the vector whose lane i is lane order[i] of another, where there are several."""
         base, mask = self.v.number.base, ", ".join(f"i32 {i}" for i in order)
 
         def one(part: str) -> str:
