@@ -34,6 +34,9 @@ __all__ = ["Slice", "TaylorOrbit", "numbers_of", "orbits_of"]
 _MANY_STEPS, _CREEPING = 50_000, 1e-10
 """Where so many steps pass less than this part of what is left, they shrink towards a singularity."""
 
+_MANY_WIDE_STEPS = 1_000
+"""In numbers wider than the machine's, which take a millisecond a step and are never too large to be finite."""
+
 _ONE = Fraction(1)
 
 _OF_ONE_STEP = (
@@ -250,7 +253,7 @@ class TaylorOrbit:
     def _some_steps(self, integrator: Any, times: list[Any], *, dense: bool) -> tuple[int, list[Any], Any]:
         from heyoka import taylor_outcome
 
-        limits = {"max_steps": _MANY_STEPS}
+        limits = {"max_steps": self._many_steps}
         if integrator.with_events:
             limits["max_delta_t"] = abs(self.span)
         if self.longest is not None:
@@ -278,13 +281,17 @@ class TaylorOrbit:
 
         plain = self._without_events if integrator is self.integrator else lambda: integrator
         tested = TestedSteps(integrator, plain, self.taylor_events.crossings, longest)
-        outcome = tested.towards(times[-1], _MANY_STEPS)
+        outcome = tested.towards(times[-1], self._many_steps)
         self.safe = tested.safe
         if dense:
             self.pieces += tested.pieces
         if outcome == taylor_outcome.time_limit:
             return tested.steps, [*tested.states_at(times[:-1]), integrator.state.copy()], outcome
         return tested.steps, tested.states_at(times), outcome
+
+    @property
+    def _many_steps(self) -> int:
+        return _MANY_STEPS if self.integrator.state.dtype in (np.float64, np.longdouble) else _MANY_WIDE_STEPS
 
     def _without_events(self) -> Any:
         if self.free is None:
@@ -298,7 +305,7 @@ class TaylorOrbit:
         own.state[:], own.dtime = self.safe
         t, state = own.time, own.state.copy()
         begin = t
-        for _ in range(_MANY_STEPS):
+        for _ in range(self._many_steps):
             own.step(self.span)
             if not is_finite(own.state) or own.time == t:
                 break
