@@ -210,15 +210,18 @@ class TransformedOrbit:
         Raises
         ------
         ArithmeticError
-            At the pace so far it would take more steps than anybody waits for.
+            At the pace of late it would take more steps than anybody waits for.
         """
         taken, left = self.n - self._begun[0], abs(there - self.time)
         gone = abs(self.time - self._begun[1])
-        if taken >= _PATIENCE and gone * _LIFETIME < left * taken:
+        if taken < _PATIENCE:
+            return
+        if gone * _LIFETIME < left * taken:
             raise ArithmeticError(
-                f"after {taken:,} steps the time has gone on by {gone:.3g}, and {left:.3g} are left: dt/ds is too "
+                f"in {taken:,} steps the time has gone on by {gone:.3g}, and {left:.3g} are left: dt/ds is too "
                 "small for this motion; scale the time by another g, or take steps of one size"
             )
+        self._begun = self.n, self.time  # a motion may fall to where the time stands nearly still
 
     def _watched(self, steps: int, there: float) -> None:
         """Take steps one by one until the time has come or an event may have happened."""
