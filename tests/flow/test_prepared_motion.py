@@ -31,6 +31,7 @@ from canon import (
     propagate,
 )
 from canon.flow import prepare, propagation
+from canon.flow.transformed import transformed_orbit
 
 X = coordinates("x")
 G = parameters("g", positive=True)
@@ -159,6 +160,17 @@ def test_a_time_that_would_take_years_to_come_is_given_up(start, by):
         ArithmeticError, match=r"the time has gone on by \S+e-\d+, and \S+ are left: dt/ds is too small"
     ):
         propagate("kepler", (0, 2), start, **by)
+
+
+def test_a_time_that_comes_to_stand_nearly_still_is_given_up(monkeypatch):
+    """The first step passes 0.05, all others 10⁻⁴⁷: judged by their mean they went on for ever."""
+    monkeypatch.setattr(transformed_orbit, "_PATIENCE", 2**12)
+    with pytest.raises(
+        ArithmeticError, match=r"in 4,096 steps the time has gone on by 0, and 0\.45 are left"
+    ):
+        propagate("kepler", (0, 2), [1e-30, 1e-30, 0.0, 0.0], **KEPLERS[3])
+    for by in KEPLERS[2:]:
+        assert propagate("kepler", (0, 2), [1.0, 0.1, 0.1, 1.1], **by).t[-1] == by.get("times", [2.0])[-1]
 
 
 @pytest.mark.parametrize("which", range(len(CASES)))
