@@ -170,7 +170,7 @@ def test_a_time_that_comes_to_stand_nearly_still_is_given_up(monkeypatch):
     ):
         propagate("kepler", (0, 2), [1e-30, 1e-30, 0.0, 0.0], **KEPLERS[3])
     for by in KEPLERS[2:]:
-        assert propagate("kepler", (0, 2), [1.0, 0.1, 0.1, 1.1], **by).t[-1] == by.get("times", [2.0])[-1]
+        assert propagate("kepler", (0, 2), [1.0, 0.1, 0.1, 1.1], **by).t[-1] == 2
 
 
 @pytest.mark.parametrize("which", range(len(CASES)))
