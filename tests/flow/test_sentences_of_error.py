@@ -11,7 +11,7 @@ import sympy as sp
 
 from canon import Event, Hamiltonian, Splitting, WisdomHolman, coordinates, propagate, time
 from canon.flow import NonFiniteStateError
-from canon.flow.adaptive import taylor_orbit
+from canon.flow.estimate import companion
 from canon.flow.estimate.error_estimate import ErrorEstimate
 
 x, y = coordinates("x y")
@@ -68,7 +68,7 @@ def test_nothing_is_known_beyond_a_collision_that_was_stepped_over(
     samples: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A fall from rest at 1 takes π/√8 = 1.11, which no companion passes; before it each sample is compared."""
-    monkeypatch.setattr(taylor_orbit, "_MANY_WIDE_STEPS", 20)
+    monkeypatch.setattr(companion, "_wider_taylor", lambda _: [("extended", 63)])
     motion = propagate(FALL, (0, 2), [1.0, 0, 0, 0], method="verlet", step=0.1, samples=samples)
     found = motion.error_estimate()
     before = motion.t < np.pi / np.sqrt(8)
