@@ -97,13 +97,20 @@ def _judged(above: sp.Poly, below: sp.Poly, s: Symbol, off: OffKinks, *, negated
             return _refuted(point, fault, str(s))
         if not parameters:
             return Verdict(Status.HOLDS, certificate="exact")
-    always, never = (partial(proof, above, below, off.domain) for proof in (_always, _never))
-    if never() if negated else always():
+    return _proved(above, below, off.domain, negated=negated, has_parameters=bool(parameters))
+
+
+def _proved(
+    above: sp.Poly, below: sp.Poly, domain: Domain, *, negated: bool, has_parameters: bool
+) -> Verdict:
+    always, never = (partial(proof, above, below, domain) for proof in (_always, _never))
+    claimed, opposite = (never, always) if negated else (always, never)
+    if claimed():
         return Verdict(Status.HOLDS, certificate="exact")
-    if always() if negated else never():
+    if opposite():
         why = "H is positive real" if negated else "Re H(jω) < 0 for some ω"
         return Verdict(Status.FAILS, certificate="exact", feedback=why)
-    if not parameters:
+    if not has_parameters:
         raise Undecided("H holds numbers that are not rational; write names for them, and say their signs")
     raise Undecided(
         f"no counterexample at {POINTS} values of the parameters, and no proof for all of them; "
