@@ -317,7 +317,7 @@ def test_a_hamiltonian_of_which_no_value_is_known_is_left_open():
         (-3 / x.dot**4, lambda p: 15 * (sp.Abs(p) / 12) ** sp.Rational(4, 5)),
         (x.dot**4 / 4, lambda p: sp.Rational(3, 4) * sp.Abs(p) ** sp.Rational(4, 3)),
     ],
-    ids=str,
+    ids=["1/v²", "−3/v⁴", "v⁴/4"],
 )
 def test_an_even_power_of_either_sign_has_a_hamiltonian(L, H):
     p = x.momentum
