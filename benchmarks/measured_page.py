@@ -699,8 +699,8 @@ SECTIONS = {
         "Of the branches of the code the tests take {0} %; lines and branches together they run {1} %. Of those that "
         "are *argued*, `benchmarks/untaken_branches.toml` says why no test takes them: they need another system, they "
         "guard a proof against what no input is known for, or a budget would have to end just there. Of the modules "
-        "beside the rooms (*canon*) more is run than is counted: what judges and proves runs in processes that end by a "
-        "signal, with their parent or when their time is over, and such a process tells nothing of what it ran. The "
+        "beside the rooms (*canon*) more is run than is counted: what judges and proves runs in processes that end by "
+        "a signal, with their parent or when their time is over, and such a process tells nothing of what it ran. The "
         "rest there is for Windows and macOS.",
         (
             Table(
