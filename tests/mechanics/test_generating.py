@@ -418,10 +418,32 @@ def test_a_function_without_a_value_generates_nothing():
     assert [rule.value for rule in hidden.rules] == [P, q]
     assert "F has a value nowhere" in hidden.generates(CanonicalTransformation(q, p, q, p)).feedback
     for refused in (generated_transformation, generated_inverse, lambda F: of_kind(F, 3)):
-        with pytest.raises(NoClosedInverseError, match="could not be solved for"):
+        with pytest.raises(NoClosedInverseError, match="F has a value nowhere"):
             refused(hidden)
     unknown = GeneratingFunction(2, q * P + sp.log(sp.besselj(0, w)), q, p, Q, P)
     assert unknown.generates(CanonicalTransformation(q, p, q, p)).undecided
     plain = GeneratingFunction(2, q * P, q, p, Q, P)
     assert generated_transformation(plain).images == (q, p)
     assert vanishes(of_kind(plain, 3).F + p * Q).holds
+
+
+def test_rules_that_were_solved_and_not_proved_are_told_with_what_was_found():
+    """The remedy that is named gives the map then: conditions on the branch."""
+    arc = GeneratingFunction(2, P * sqrt(1 - q**2), q, p, Q, P)
+    with pytest.raises(
+        NoClosedInverseError, match=r"F = .*not shown to generate the same map: on the map q = "
+    ):
+        of_kind(arc, 3)
+    within = Domain((q > 0, q < 1))
+    other = of_kind(arc, 3, within)
+    assert vanishes((other.F + p * sqrt(1 - Q**2)).subs(sp.Abs(Q), Q)).holds
+    norm = GeneratingFunction(2, sqrt(q**2 + P**2), q, p, Q, P)
+    with pytest.raises(
+        NoClosedInverseError, match=r"P = .*not shown to keep them: on the map p = ∂F/∂q should be p"
+    ):
+        generated_transformation(norm)
+    assert generated_transformation(norm, Domain((q > 0, P > 0, p > 0, p < 1))).is_canonical().holds
+    with pytest.raises(
+        NoClosedInverseError, match=r"^the rules for p, Q could not be solved in closed form; give"
+    ):
+        of_kind(GeneratingFunction(2, q * P + q**3 * P**3, q, p, Q, P), 3)

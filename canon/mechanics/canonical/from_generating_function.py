@@ -26,6 +26,8 @@ from canon.proof.domain.domain import Domain, as_domain
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from canon.proof.domain.verdict import Verdict
+
 
 __all__ = [
     "generated_hamiltonian",
@@ -49,7 +51,7 @@ def generated_transformation(F: GeneratingFunction, domain: Domain | None = None
     Raises
     ------
     NoClosedInverseError
-        Where the rules could not be solved in closed form.
+        Where the rules could not be solved in closed form, or what came of it was not proved.
 
     Examples
     --------
@@ -112,7 +114,7 @@ def generated_hamiltonian(
     Raises
     ------
     NoClosedInverseError
-        Where the rules could not be solved in closed form.
+        Where the rules could not be solved in closed form, or what came of it was not proved.
     ValueError
         Where H is about other variables, pairs or another time than F.
 
@@ -146,7 +148,7 @@ def of_kind(
     Raises
     ------
     NoClosedInverseError
-        Where the rules could not be solved for the variables of the new type.
+        Where the rules could not be solved for the variables of the new type, or what came of it was not proved.
 
     Examples
     --------
@@ -162,16 +164,28 @@ def of_kind(
         total += F.new_q[i] * F.new_p[i] * ((new in (2, 4)) - (old in (2, 4)))
         total -= F.q[i] * F.p[i] * ((new in (3, 4)) - (old in (3, 4)))
     empty = GeneratingFunction(kinds, sp.S.Zero, F.q, F.p, F.new_q, F.new_p, t=F.t)
+    unproved = ""
     for solved, narrowed in _expressed(F, (*empty.old, *empty.new), domain or F.domain):
         there = Domain(carried(narrowed.conditions, solved), narrowed.box)
         value = shortened(substitute(total, solved))
         found = GeneratingFunction(kinds, value, F.q, F.p, F.new_q, F.new_p, there, F.t)
-        if found.holds_on(_graph(F), narrowed).holds:
+        verdict = found.holds_on(_graph(F), narrowed)
+        if verdict.holds:
             return found
-    raise NoClosedInverseError(
-        f"the rules could not be solved for {(*empty.old, *empty.new)} in closed form; give conditions that "
-        "choose a branch"
+        unproved = f"F = {value}, which was not shown to generate the same map: {_why(verdict)}"
+    raise _not_expressed((*empty.old, *empty.new), unproved)
+
+
+def _not_expressed(wanted: tuple[Symbol, ...], unproved: str) -> NoClosedInverseError:
+    """Tell apart that rules were not solved and that what came of it was not proved."""
+    found = f"give {unproved}" if unproved else "could not be solved in closed form"
+    return NoClosedInverseError(
+        f"the rules for {', '.join(map(str, wanted))} {found}; give conditions that choose a branch"
     )
+
+
+def _why(verdict: Verdict) -> str:
+    return verdict.feedback or "; ".join(e.text for e in verdict.evidence) or verdict.status.value
 
 
 def _graph(F: GeneratingFunction) -> dict[Symbol, Expr]:
@@ -184,15 +198,17 @@ def _solved(
     F: GeneratingFunction, start: tuple[Symbol, ...], target: tuple[Symbol, ...], domain: Domain
 ) -> CanonicalTransformation:
     n = len(F.q)
+    unproved = ""
     for solved, narrowed in _expressed(F, start, domain):
         for conditions in (domain.conditions, narrowed.conditions):
             here = Domain(carried(conditions, solved), domain.box)
-            if F.holds_on(solved, here).holds:
+            verdict = F.holds_on(solved, here)
+            if verdict.holds:
                 images = [solved[s] for s in target]
                 return CanonicalTransformation(start[:n], start[n:], images[:n], images[n:], here, F.t)
-    raise NoClosedInverseError(
-        f"the rules could not be solved for {target} in closed form; give conditions that choose a branch"
-    )
+            told = ", ".join(f"{s} = {solved[s]}" for s in target)
+            unproved = f"{told}, which was not shown to keep them: {_why(verdict)}"
+    raise _not_expressed(target, unproved)
 
 
 def _expressed(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, cast
 import sympy as sp
 
 from canon.expression.symbols.user_input import given_kind
-from canon.mechanics.algebra.all_vanish import all_vanish
+from canon.mechanics.algebra.all_vanish import all_vanish, having_values
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.proof.analytic import proved_sign
 from canon.proof.continuity.jumps import continued
@@ -78,8 +78,8 @@ def is_separable(H: Hamiltonian, domain: Domain | None = None, budget: float = 1
     Returns
     -------
     Verdict
-        HOLDS where Levi-Civita's conditions do for each pair; FAILS names the pair that does not separate, or a
-        coordinate that stands in H without its momentum.
+        HOLDS where Levi-Civita's conditions do for each pair; FAILS names the pair that does not separate, a coordinate
+        that stands in H without its momentum, or says that H has a value nowhere.
 
     Raises
     ------
@@ -113,7 +113,7 @@ def is_separable(H: Hamiltonian, domain: Domain | None = None, budget: float = 1
         why = f"H has a kink where {bend} = 0, across several coordinates, which Levi-Civita's conditions do not show"
         return Verdict(Status.UNDECIDED, question, evidence=(Evidence("open", why),), feedback=why)
     if verdict.status is not Status.FAILS:
-        return verdict
+        return having_values(verdict, {"H": H.H}, H.q, domain)
     condition = verdict.feedback.removeprefix("not so: ")
     if condition not in words:
         return verdict

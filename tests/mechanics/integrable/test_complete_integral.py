@@ -355,3 +355,18 @@ def test_a_momentum_that_may_not_stand_in_the_hamiltonian_is_named():
     assert verdict.feedback == "whether H depends on p_y was not decided"
     without = is_separable(Hamiltonian(px**2 + y**2, [x, y], [px, py]), inside)
     assert without.feedback == "y does not separate: H depends on y, and not on its momentum p_y"
+
+
+@pytest.mark.parametrize(
+    ("hidden", "twin"),
+    [
+        (1 / (sp.sin(x) ** 2 + sp.cos(x) ** 2 - 1), 1 / (sp.sin(x) ** 2 + sp.cos(x) ** 2 - 2)),
+        (sp.log((y + 1) ** 2 - y**2 - 2 * y - 1), sp.log((y + 1) ** 2 - y**2 - 2 * y)),
+    ],
+)
+def test_what_has_a_value_nowhere_does_not_separate(hidden, twin):
+    for added in (0, y**2):
+        verdict = is_separable(Hamiltonian(PLANE + added + hidden, [x, y], [px, py]))
+        assert verdict.fails
+        assert verdict.feedback.startswith("H has a value nowhere")
+        assert is_separable(Hamiltonian(PLANE + added + twin, [x, y], [px, py])).holds
