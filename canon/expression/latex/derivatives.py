@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NoReturn
 
-from canon.expression.latex.pieces import Operator, Piece, Powered, items_of, mark_of, whole
+from canon.expression.latex.pieces import Group, Operator, Piece, base_and_order, items_of, mark_of
 from canon.expression.symbols.symbol import Coordinate, Rate
 from canon.expression.text.syntax import Call, LanguageError, Name, Node, Number, Tuple
 
 if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
 
-__all__ = ["Derivatives", "derivative"]
+__all__ = ["Derivatives", "are_differentials", "derivative", "differentials_behind"]
 
 
 _MOST_RATES = 2
@@ -50,7 +50,7 @@ class Derivatives:
             return None
         mark, variables = found
         first = items_of(above)[0]
-        base, order = (first.base, whole(first.exponent)) if isinstance(first, Powered) else (first, 1)
+        base, order = base_and_order(first)
         same = mark_of(base) == mark and order == sum(order for _, order in variables)
         if mark == "declared":
             if same:
@@ -139,17 +139,54 @@ def derivative(operand: Node, variables: tuple[tuple[Name, int], ...], column: i
     return Call("Derivative", (operand, *orders), column)
 
 
+def differentials_behind(below: tuple[Piece, ...], order: int) -> int:
+    r"""Return how many pieces behind the slash of ``\partial^2 W/\partial x\partial y`` are its differentials.
+
+    Parameters
+    ----------
+    below
+        What stands behind the slash.
+    order
+        The order above it, which tells where they end.
+    """
+    if _in_brackets(below[0])[0]:
+        return 1
+    mark = mark_of(below[0])
+    if mark not in ("d", "partial") or len(below) == 1:
+        return 0
+    end = 2
+    found = base_and_order(below[1])[1] or order
+    while found < order and end + 1 < len(below) and mark_of(below[end]) == mark:
+        found += base_and_order(below[end + 1])[1] or order
+        end += 2
+    return end
+
+
+def are_differentials(items: tuple[Piece, ...]) -> bool:
+    r"""Whether pieces are marks and what they stand before, ``\partial x\partial y``."""
+    return not len(items) % 2 and all(mark_of(item) in ("d", "partial") for item in items[::2])
+
+
+def _in_brackets(piece: Piece) -> tuple[tuple[Piece, ...], int]:
+    r"""Return the differentials of ``(\partial x\partial y)`` or ``(\partial x)^2``, and the exponent."""
+    base, order = base_and_order(piece)
+    items = items_of(base.inner) if isinstance(base, Group) and base.printed else ()
+    return (items, order) if items and are_differentials(items) and order else ((), 1)
+
+
 def _variables(below: Piece) -> tuple[str, tuple[tuple[Name, int], ...]] | None:
     r"""Return the mark and the variables of ``\partial x^2\partial y``, None for any other denominator."""
-    items = items_of(below)
+    items, times = items_of(below), 1
+    if len(items) == 1:
+        items, times = _in_brackets(items[0])
     marks = {mark_of(item) for item in items[::2]}
-    mark = marks.pop()
+    mark = marks.pop() if items else None
     if len(items) % 2 or marks or mark is None:
         return None
     variables: list[tuple[Name, int]] = []
     for item in items[1::2]:
-        base, order = (item.base, whole(item.exponent)) if isinstance(item, Powered) else (item, 1)
+        base, order = base_and_order(item)
         if not isinstance(base, Name) or order is None:
             return None
-        variables.append((base, order))
+        variables.append((base, order * times))
     return mark, tuple(variables)

@@ -28,9 +28,10 @@ from lark import Lark, Token, Transformer_NonRecursive, UnexpectedToken
 from lark.exceptions import VisitError
 
 from canon.expression.latex.argument_end import bare_argument
+from canon.expression.latex.derivatives import are_differentials
 from canon.expression.latex.latex_statement import spans
 from canon.expression.latex.meaning import Meaning
-from canon.expression.latex.pieces import FactorRun, Group, Head, Piece, Powered, mark_of, whole
+from canon.expression.latex.pieces import FactorRun, Group, Head, Piece, Powered, whole
 from canon.expression.latex.quotient import dividing, shown
 from canon.expression.latex.words import Word, Words, words_of
 from canon.expression.ranges.latex_ranges import with_ranges
@@ -259,14 +260,12 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         found = children[:1]
         for sign, piece in zip(children[1::2], children[2::2], strict=True):
             above, below = _items(found[-1]), _items(piece)
-            derivative = None
-            if sign.kind == "SLASH" and len(below) > 1 and mark_of(below[0]) in ("d", "partial"):
-                derivative = self.meaning.spelled_with_slash(above, below[:2])
+            derivative = self.meaning.spelled_with_slash(above, below) if sign.kind == "SLASH" else None
             if derivative is None:
                 found += (sign, piece)
                 continue
-            start, made = derivative
-            items = (*above[:start], made, *below[2:])
+            start, made, end = derivative
+            items = (*above[:start], made, *below[end:])
             found[-1] = FactorRun(items, items[0].column)
         return found
 
@@ -309,6 +308,8 @@ class _Build(Transformer_NonRecursive[Token, Any]):
 
     def group(self, children: list[Any]) -> Group:
         opening, *inner = children
+        if isinstance(inner[0], FactorRun) and are_differentials(inner[0].items):
+            return Group(inner[0], braces=False, column=opening.column)
         if len(inner) == 1:
             return Group(self.meaning.node(inner[0]), braces=False, column=opening.column)
         if opening.shown != "(":

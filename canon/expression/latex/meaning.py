@@ -7,12 +7,12 @@ stays linear in the text.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
-from typing import TYPE_CHECKING, NoReturn
+from itertools import pairwise, takewhile
+from typing import TYPE_CHECKING, NoReturn, cast
 
 from canon.cached_property import cached_property
 from canon.expression.latex.argument_end import ArgumentEnd, bare_argument
-from canon.expression.latex.derivatives import Derivatives, derivative
+from canon.expression.latex.derivatives import Derivatives, derivative, differentials_behind
 from canon.expression.latex.names import Applied, Function, Mark
 from canon.expression.latex.pieces import (
     FactorRun,
@@ -22,6 +22,7 @@ from canon.expression.latex.pieces import (
     Operator,
     Piece,
     Powered,
+    base_and_order,
     is_function,
     is_in_degrees,
     is_minus_one,
@@ -46,6 +47,8 @@ _INVERSE = {"sin": "asin", "cos": "acos", "tan": "atan", "cot": "acot", "sinh": 
             "tanh": "atanh"}  # fmt: skip
 _MAX_CHAIN = 4
 r"""Most functions in a row without brackets, ``\ln\sin x``."""
+_MOST_DERIVATIVES = 8
+"""Most derivatives in front of what they are taken of."""
 
 
 @dataclass(frozen=True)
@@ -126,7 +129,7 @@ class Meaning:
                 case Head(function=Applied() as function):
                     node, at = self._declared(items, at, item, function)
                 case Operator():
-                    node, at = self._operated(items, at, item)
+                    node, at = self._operators(items, at)
                 case Mark():
                     node, at = self._marked(items, at, item)
                 case _:
@@ -269,7 +272,7 @@ class Meaning:
 
     def ends_with_derivative_of_fraction(self, items: tuple[Piece, ...]) -> bool:
         """Whether pieces end with an operator such as d/dt and a fraction, which what follows may belong to."""
-        return len(items) > 1 and isinstance(items[-1], LatexFraction) and isinstance(items[-2], Operator)
+        return len(items) > 1 and _is_fraction(items[-1]) and isinstance(items[-2], Operator)
 
     def _called(self, head: Head, function: Function, argument: Node, after: Node | None) -> Node:
         r"""Return a built-in function of its argument, raised as ``\sin^2`` or after the brackets."""
@@ -342,6 +345,17 @@ class Meaning:
             )
         return derivative(call, ((variable, function.order),), column)
 
+    def _operators(self, items: tuple[Piece, ...], at: int) -> tuple[Node, int]:
+        r"""Return the derivative of what follows one operator or several, ``\partial_x\partial_y W``."""
+        waiting = [*takewhile(lambda item: isinstance(item, Operator), items[at:])]
+        *outer, innermost = cast("list[Operator]", waiting)
+        if len(outer) >= _MOST_DERIVATIVES:
+            self.refuse(innermost.column, "a derivative of more than the 8th order")
+        node, end = self._operated(items, at + len(outer), innermost)
+        for operator in reversed(outer):
+            node = self.derivatives.of(operator, node)
+        return node, end
+
     def _operated(self, items: tuple[Piece, ...], at: int, operator: Operator) -> tuple[Node, int]:
         """Return the derivative of what follows an operator such as d/dx."""
         following = items[at + 1] if at + 1 < len(items) else None
@@ -355,8 +369,8 @@ class Meaning:
                 return self.derivatives.of(operator, operand), end
         if isinstance(following, Group):
             return self.derivatives.of(operator, self.node(following)), at + 2
-        if isinstance(following, LatexFraction) and at + 2 == len(items):
-            return self.derivatives.of(operator, following.node), at + 2
+        if at + 2 == len(items) and following and _is_fraction(following):
+            return self.derivatives.of(operator, self.node(following)), at + 2
         name = following and unbraced(following)
         along = operator if operator.total else self.derivatives.along_the_motion(operator)
         whole = at + 2 == len(items)  # what d/dt r θ' reaches is not said
@@ -390,18 +404,24 @@ class Meaning:
 
     def spelled_with_slash(
         self, above: tuple[Piece, ...], below: tuple[Piece, ...]
-    ) -> tuple[int, Piece] | None:
-        r"""Return where the derivative of ``m\,d\theta/dt`` begins and what it is, None where a slash divides.
+    ) -> tuple[int, Piece, int] | None:
+        r"""Return the derivative of ``m\,d\theta/dt``, None where a slash divides.
 
         Parameters
         ----------
         above, below
-            What stands before and behind the slash, of ``below`` the differential only.
+            What stands before and behind the slash.
+
+        Returns
+        -------
+        tuple
+            Where it begins before the slash, what it is, and where it ends behind the slash.
         """
         for start, item in enumerate(above):
-            if mark_of(item.base if isinstance(item, Powered) else item) in ("d", "partial"):
-                spelled, over = FactorRun(above[start:], item.column), FactorRun(below, below[0].column)
-                return start, self.fraction(spelled, over, item.column)
+            base, order = base_and_order(item)
+            if mark_of(base) in ("d", "partial") and (end := differentials_behind(below, order or 1)):
+                spelled, over = FactorRun(above[start:], item.column), FactorRun(below[:end], below[0].column)
+                return start, self.fraction(spelled, over, item.column), end
         return None
 
     def _stray(self, mark: Mark) -> NoReturn:
@@ -423,3 +443,8 @@ class Meaning:
         numerator, denominator = self.node(above), self.node(below)
         numbers = isinstance(numerator, Number) and isinstance(denominator, Number)
         return LatexFraction(Product(((False, numerator), (True, denominator)), column), numbers, column)
+
+
+def _is_fraction(piece: Piece) -> bool:
+    r"""Whether a piece is a fraction, a quotient or a derivative, ``\frac{\partial L}{\partial\dot\theta}``."""
+    return isinstance(piece, LatexFraction) or (isinstance(piece, Call) and piece.function == "Derivative")

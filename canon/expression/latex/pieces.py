@@ -19,6 +19,7 @@ __all__ = [
     "Operator",
     "Piece",
     "Powered",
+    "base_and_order",
     "in_degrees",
     "is_function",
     "is_in_degrees",
@@ -115,6 +116,11 @@ def is_minus_one(exponent: Node | None) -> bool:
 def whole(node: Node) -> int | None:
     """Return the whole number that a node is, None for any other node."""
     return node.numerator if isinstance(node, Number) and node.denominator == 1 else None
+
+
+def base_and_order(piece: Piece) -> tuple[Piece, int | None]:
+    """Return what a piece raises and the whole number it is raised to, None for any other exponent."""
+    return (piece.base, whole(piece.exponent)) if isinstance(piece, Powered) else (piece, 1)
 
 
 def raised(node: Node, exponent: Node | None) -> Node:
