@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 __all__ = ["without_macros"]
 
 _MOST = 8
-"""Most macros, and most uses of each, in one field."""
+"""Most macros in one field."""
+_MOST_USES = 24
+"""Most uses of each."""
 _LONGEST = 4_000
 """Characters of a text that is written out."""
 _INSIDE = r"(?:[^{}\\]|\\.|\{(?:[^{}\\]|\\.|\{(?:[^{}\\]|\\.|\{(?:[^{}\\]|\\.)*\})*\})*\}){0,400}"
@@ -129,7 +131,7 @@ def _used(text: str, name: str, meaning: str, number: int) -> str | None:
     """Return what follows a definition with the macro written out; None where that can't be done."""
     use = re.compile(rf"\\{name[1:]}(?![A-Za-z])\s*")
     begin = 0
-    for _ in range(3 * _MOST):
+    for _ in range(_MOST_USES + 1):
         found = use.search(text, begin)
         if found is None:
             return text

@@ -28,7 +28,7 @@ USED = "+".join(rf"\q{letter}" for letter in LETTERS)
         (r"\def\w{ab}m\w", a * b * m),
         (r"\underbrace{a}_{T}x", a * x),
         (EIGHT + USED, sum(SCOPE.names[letter] for letter in LETTERS)),
-        (r"\def\w{\omega}" + "+".join([r"\w"] * 23), 23 * omega),
+        (r"\def\w{\omega}" + "+".join([r"\w"] * 24), 24 * omega),
         (r"\SI{2}{\square\metre}\,x", 2 * x),
     ],
 )
