@@ -125,6 +125,12 @@ class Builder:
         symbol = self.scope.symbol(name)
         if symbol is not None and node.primes < 3:
             return self.value(node, name, symbol)
+        if node.primes and isinstance(self.scope.symbol(node.text), Momentum):
+            self.refuse(
+                node,
+                f"{node.text}' is the rate of a momentum, for which there is no symbol",
+                "write what it is equal to on the motion",
+            )
         if node.primes:
             self.refuse(
                 node,

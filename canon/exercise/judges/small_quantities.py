@@ -26,6 +26,7 @@ from canon.exercise.question.question import (
     SameEquations,
     Stated,
     decide,
+    fails,
     more_than_zero,
 )
 from canon.exercise.question.series_expansion import check_analytic, coefficient, coefficients, without_kinks
@@ -67,6 +68,7 @@ def first_order(reading: Reading) -> Iterator[Question]:
         reading.fault("order", f"should be a whole number from -{MOST_ORDERS} to {MOST_ORDERS}")
     small = small_symbols(reading)
     names, deadline = ", ".join(map(str, small)), Deadline.after(0.9 * reading.claim.budget)
+    yield from _repeated(exact, claimed, small)
     tied = _tied(small, reading.domain)
     small, domain = [s for s in small if s not in tied], transported(reading.domain, tied)
     said = f"right to {_ordinal(order)} order in {names}"
@@ -102,6 +104,13 @@ def first_order(reading: Reading) -> Iterator[Question]:
         if not _is_expanded(g, small)
     )
     yield Determines(lambda: exactly)
+
+
+def _repeated(exact: Sequence[Expr], claimed: Sequence[Expr], small: Sequence[Symbol]) -> Iterator[Stated]:
+    """Yield that an answer says nothing which is what was given, and no expansion of it."""
+    if [*exact] == [*claimed] and not all(_is_expanded(g, small) for g in claimed):
+        said = "this says nothing: it is what is given, and not expanded"
+        yield Stated(fails("the answer is an expansion", said))
 
 
 def _is_expanded(f: Expr, small: Sequence[Symbol]) -> bool:

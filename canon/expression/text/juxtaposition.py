@@ -111,7 +111,10 @@ class Reader(FactorParser):
 
     def open_slash(self) -> tuple[str, str]:
         """Return the question behind a function without brackets, ``g sin θ / l``, and both its readings."""
-        slash, below = self.tokens[self.at - 1].column - 1, self.token.text
+        slash, below = (
+            self.tokens[self.at - 1].column - 1,
+            "(…)" if self.token.text == "(" else self.token.text,
+        )
         head, first = (token.column - 1 for token in self.bare_start)
         name, argument = self.text[head:first].strip()[:20], self.text[first:slash].strip()[:20]
         readings = f"{name}({argument})/{below} or {name}({argument}/{below})"

@@ -152,6 +152,8 @@ class Scope:
         called = behind.lstrip().startswith(("(", "[", r"\left"))
         if name in LEGENDRES and called and (name not in ("F", "Pi") or "," in behind.partition(")")[0]):
             return f"if Legendre's integral is meant, write {LEGENDRES[name]} of the parameter m = k²"
+        if name == "E":
+            return "if an energy is meant, write what it is equal to; Euler's number is exp(1)"
         if name in OTHER_NAMES:
             return f"write {OTHER_NAMES[name]}"
         if name in WRITTEN_OUT:

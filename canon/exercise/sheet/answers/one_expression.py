@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from canon.exercise.sheet import field_texts
 from canon.exercise.sheet.answers.names_asked import NamesAsked
+from canon.exercise.sheet.answers.rate_of_constant import without_rate
 from canon.exercise.sheet.equations.own_labels import (
     counted_in_words,
     is_rest,
@@ -87,8 +88,9 @@ class OneExpression:
             return "0"
         first, *others = self._without_own_label(place, self._without_rate_of_entry(named, asked))
         sides = [first, *(side for side in others if not self.names.is_constant(place, side))]
+        sides = self._without_rate_of_constant(place, sides)
         if len(sides) == 1:
-            return self._written_out(place, first)
+            return self._written_out(place, sides[0])
         self.names.refuse_lagrangian(place, text, sides[0])
         if not self.names.is_asked(sides[0], asked) and self.names.is_asked(sides[-1], asked):
             sides = sides[::-1]  # p²/2m = T = H
@@ -162,6 +164,14 @@ class OneExpression:
         if rest is not sides:
             self.sides.passed.append(f"{sides[0].text.strip(' $')} in {place} is taken for what is asked for")
         return rest
+
+    def _without_rate_of_constant(self, place: str, sides: list[Side]) -> list[Side]:
+        """Return what ``d/dt (m r² φ̇) = 0`` says is kept, where a constant of the motion is asked for."""
+        of_motion = place == "I" or place.startswith("conserved")
+        kept = without_rate(sides, self.sides.scope.time.name) if of_motion else sides
+        if len(kept) < len(sides):
+            self.sides.passed.append(f"{place} is what stands behind d/dt: its rate is said to be zero")
+        return [*kept]
 
     def _without_rate_of_entry(self, sides: Sequence[Side], asked: Quantity) -> Sequence[Side]:
         """Return sides without ``ṗ`` before ``{p, H}``, which is what it is by Hamilton's equations."""
