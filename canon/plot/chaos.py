@@ -25,7 +25,13 @@ __all__ = ["plot_chaos_map", "plot_section"]
 _EMPTY = 20
 """Grids have no more than so many places for each orbit."""
 
-_KINDS = {"regular": COLOURS[0], "chaotic": COLOURS[1], "not known yet": COLOURS[2], "left": "#a0a0a0"}
+_KINDS = {
+    "regular": COLOURS[0],
+    "chaotic": COLOURS[1],
+    "not known yet": COLOURS[2],
+    "unstable": COLOURS[3],
+    "left": "#a0a0a0",
+}
 
 
 def plot_section(

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scipy.linalg import expm
-from sympy import Symbol, sqrt, symbols
+from sympy import Rational, Symbol, cos, sqrt, symbols
 
 from canon import Hamiltonian, Splitting, VectorField, coordinates
 from canon.flow import (
@@ -87,7 +87,7 @@ def test_alignment_says_what_it_cannot_tell_and_what_has_left():
     short, long = (sali(saddle, (0, span), [1e-9, 0.1, 0, 0.1], **how) for span in (16, 40))
     assert short.verdict is Regularity.NOT_KNOWN
     assert "too fast for a regular orbit and not far enough for a chaotic one: run longer" in short.reason
-    assert long.verdict is Regularity.CHAOTIC
+    assert long.verdict is Regularity.UNSTABLE  # the growth of chaos, in a linear system
     henon = Hamiltonian(
         (x.momentum**2 + y.momentum**2 + x**2 + y**2) / 2 + x**2 * y - y**3 / 3,
         [x, y],
@@ -104,7 +104,7 @@ def test_a_spectrum_is_shown_with_its_verdict_and_errors():
     saddle = Hamiltonian((x.momentum**2 - 4 * x**2) / 2, [x], [x.momentum])
     how = {"method": Splitting("kahan-li-8"), "step": 0.05, "samples": 40}
     one = lyapunov_spectrum(saddle, (0, 40), [1e-9, 0], **how)
-    assert repr(one) == "<LyapunovSpectrum: chaotic, 2 ± 0.05, -2 ± 0.05>"
+    assert repr(one) == "<LyapunovSpectrum: 2 ± 0.05, -2 ± 0.05; unstable>"
     many = lyapunov_spectrum(saddle, (0, 40), np.array([[1e-9, 2e-9], [0, 0]]), **how)
     assert repr(many) == "<LyapunovSpectrum: 2 exponents of 2 orbits>"
 
@@ -116,3 +116,32 @@ def test_a_frequency_that_moves_a_little_is_neither_regular_nor_chaotic():
     assert (still.verdict, little.verdict) == (Regularity.REGULAR, Regularity.NOT_KNOWN)
     assert still.second == pytest.approx(still.first, abs=1e-12)
     assert little.second - little.first == pytest.approx(1e-3, rel=1e-3)
+
+
+def test_beside_rest_and_in_linear_systems_neighbours_part_without_chaos():
+    """The exponents are ±1 in all of these; the pendulum at rest below, and a chaotic orbit, are the twins."""
+    x, t = coordinates("x"), Symbol("t", real=True)
+    u, v = symbols("u v", real=True)
+    pendulum = Hamiltonian(x.momentum**2 / 2 - cos(x), x, x.momentum)
+    inverted = Hamiltonian(x.momentum**2 / 2 + cos(x), x, x.momentum)
+    hill = Hamiltonian(x.momentum**2 / 2 + x**2 * (1 + cos(2 * t) / 2) / 2, x, x.momentum)
+    duffing = Hamiltonian(x.momentum**2 / 2 - x**2 / 2 + x**4 / 4 - 3 * x * cos(t) / 10, x, x.momentum)
+    saddle = VectorField([u, -v], [u, v])
+    assert lyapunov_spectrum(saddle, (0, 50), [1, 1]).verdict is Regularity.UNSTABLE
+    at_rest = megno(inverted, (0, 100), [0, 0])
+    assert at_rest.verdict is Regularity.UNSTABLE
+    assert at_rest.reason.endswith("that is no chaos beside a state of rest or in a linear system")
+    assert megno(hill, (0, 200), [1, 0]).verdict is Regularity.UNSTABLE
+    assert megno(pendulum, (0, 100), [0, 0]).verdict is Regularity.REGULAR
+    assert megno(duffing, (0, 1000), [0.1, 0]).verdict is Regularity.CHAOTIC
+    many = megno(inverted, (0, 100), np.array([[0.0, 1.0], [0.0, 0.0]]))
+    assert [*many.verdict] == [Regularity.UNSTABLE, Regularity.REGULAR]
+
+
+def test_a_regular_orbit_stands_with_the_rate_that_would_have_been_seen():
+    """Lorenz's system has the exponent 0.9, which five units of time can't show."""
+    x, y, z, rest = symbols("x y z rest", real=True)
+    lorenz = VectorField([10 * (y - x), x * (28 - z) - y, x * y - Rational(8, 3) * z, 0], [x, y, z, rest])
+    short = lyapunov_spectrum(lorenz, (0, 5), [1, 1, 1, 0])
+    assert repr(short).endswith("; regular, no rate above 2.4>")
+    assert lyapunov_spectrum(lorenz, (0, 100), [1, 1, 1, 0]).verdict is Regularity.CHAOTIC

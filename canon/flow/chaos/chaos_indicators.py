@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.expression.symbols.user_input import counted
-from canon.flow.chaos.regularity import Judged, Regularity, judged_growth, mean_megno, of_true_orbits
+from canon.flow.chaos.regularity import Judged, Regularity, judged_growth, mean_megno, of_their_systems, told
 from canon.flow.tangent.deviation_frame import given_frame, random_vectors
 from canon.flow.tangent.deviation_growth import DeviationRun, deviation_growth, deviation_task
 
@@ -60,7 +60,7 @@ class ChaosIndicator:
 
     def __repr__(self) -> str:
         if isinstance(self.verdict, Regularity):
-            return f"<{self.name} {self.value:.4g}: {self.verdict.value}>"
+            return f"<{self.name} {self.value:.4g}: {told(self.verdict, self.detection_limit)}>"
         kinds = [f"{int((self.verdict == kind).sum())} {kind.value}" for kind in Regularity]
         said = ", ".join(words for words in kinds if not words.startswith("0 "))
         return f"<{self.name} of {counted(len(self.verdict), 'orbit')}: {said}>"
@@ -68,7 +68,7 @@ class ChaosIndicator:
 
 def indicator_of(name: str, growth: DeviationGrowth, history: Array, judged: Judged) -> ChaosIndicator:
     """Return an indicator from its history, shape (times, orbits), and the verdicts."""
-    judged = of_true_orbits(judged, growth.energy_error)
+    judged = of_their_systems(judged, growth)
     only = 0 if growth.single else slice(None)
     own = history[:, only]
     return ChaosIndicator(
@@ -127,7 +127,7 @@ def megno(
     >>> from canon import Splitting
     >>> how = dict(method=Splitting("kahan-li-8"), step=0.2)
     >>> megno("henon-heiles", (0, 3000), "regular", **how)
-    <MEGNO 2.065: regular>
+    <MEGNO 2.065: regular, no rate above 0.004>
     >>> megno("henon-heiles", (0, 3000), "chaotic", **how).verdict
     <Regularity.CHAOTIC: 'chaotic'>
     """

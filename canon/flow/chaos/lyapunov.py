@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.expression.symbols.user_input import counted
-from canon.flow.chaos.regularity import Regularity, judged_growth, of_true_orbits
+from canon.flow.chaos.regularity import Regularity, judged_growth, of_their_systems, told
 from canon.flow.tangent.deviation_frame import random_frame
 from canon.flow.tangent.deviation_growth import DeviationRun, deviation_growth, deviation_task
 
@@ -78,7 +78,8 @@ class LyapunovSpectrum:
             return f"<LyapunovSpectrum: {count} of {counted(len(self.verdict), 'orbit')}>"
         shown = [f"{x:.4g} ± {e:.1g}" for x, e in zip(self.exponents, self.errors, strict=True)]
         more = ", …" if len(shown) > _SHOWN else ""
-        return f"<LyapunovSpectrum: {self.verdict.value}, {', '.join(shown[:_SHOWN])}{more}>"
+        verdict = told(self.verdict, self.detection_limit)
+        return f"<LyapunovSpectrum: {', '.join(shown[:_SHOWN])}{more}; {verdict}>"
 
     @property
     def largest(self) -> Any:
@@ -224,7 +225,7 @@ def largest_lyapunov_exponent(
 
 def _spectrum(growth: DeviationGrowth, size: int) -> LyapunovSpectrum:
     t, log = growth.t, growth.log
-    judged = of_true_orbits(judged_growth(t, log[0]), growth.energy_error)
+    judged = of_their_systems(judged_growth(t, log[0]), growth)
     begin = len(t) // _ALIGNING
     exponents = (log[:, -1] - log[:, begin]) / (t[-1] - t[begin])
     errors = np.hypot(_error(t[begin:], log[:, begin:]), _SLOW / t[-1])

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from canon.array import Array
+    from canon.flow.tangent.deviation_growth import DeviationGrowth
 
 __all__ = [
     "Judged",
@@ -26,8 +27,9 @@ __all__ = [
     "mean_megno",
     "mean_over_time",
     "megno_of",
-    "of_true_orbits",
+    "of_their_systems",
     "quarters",
+    "told",
 ]
 
 
@@ -35,11 +37,13 @@ class Regularity(enum.Enum):
     """What an orbit was found to be over the time that it was followed.
 
     ``LEFT`` is said of orbits among many that left the finite numbers, by escape or collision; of a single one that is
-    an error. An unstable equilibrium or periodic orbit has a positive exponent too, and is called chaotic here.
+    an error. ``UNSTABLE`` are states of rest, and motions of linear systems, beside which neighbours part exponentially
+    without chaos; an unstable periodic orbit has a positive exponent too, and is called chaotic here.
     """
 
     REGULAR = "regular"
     CHAOTIC = "chaotic"
+    UNSTABLE = "unstable"
     NOT_KNOWN = "not known yet"
     LEFT = "left"
 
@@ -116,29 +120,45 @@ def judged_growth(t: Array, log: Array) -> Judged:
     return Judged(found, limit, reasons)
 
 
-def of_true_orbits(judged: Judged, energy_error: Array) -> Judged:
-    """Return verdicts that say nothing of orbits whose energy is far off: they are not the system's.
+def of_their_systems(judged: Judged, growth: DeviationGrowth) -> Judged:
+    """Return verdicts that say no more of orbits than their systems allow.
+
+    Nothing is said of those whose energy is far off: they are not the system's. Those that rest, and those of a linear
+    system, are unstable and not chaotic where neighbours part exponentially.
 
     Parameters
     ----------
     judged
-        The verdicts.
-    energy_error
-        How much H has changed, as part of its size, shape (orbits,).
+        The verdicts by growth alone.
+    growth
+        What else is known of the orbits.
     """
-    wrong = (energy_error > FAR_OFF) & (judged.verdicts != Regularity.LEFT)
-    if not wrong.any():
+    wrong = (growth.energy_error > FAR_OFF) & (judged.verdicts != Regularity.LEFT)
+    unstable = growth.without_chaos & (judged.verdicts == Regularity.CHAOTIC) & ~wrong
+    if not (wrong | unstable).any():
         return judged
-    reasons = tuple(
-        f"the energy has changed by {off:.2g} of its size, so that this is not the system's motion: take a shorter "
-        "step, or Taylor()"
-        if far
-        else reason
-        for far, off, reason in zip(wrong, energy_error, judged.reasons, strict=True)
-    )
-    verdicts = judged.verdicts.copy()
-    verdicts[wrong] = Regularity.NOT_KNOWN
-    return replace(judged, verdicts=verdicts, reasons=reasons)
+    verdicts, reasons = judged.verdicts.copy(), [*judged.reasons]
+    verdicts[wrong], verdicts[unstable] = Regularity.NOT_KNOWN, Regularity.UNSTABLE
+    for k in np.flatnonzero(wrong):
+        off = growth.energy_error[k]
+        reasons[k] = (
+            f"the energy has changed by {off:.2g} of its size, so that this is not the system's motion: take a shorter "
+            "step, or Taylor()"
+        )
+    for k in np.flatnonzero(unstable):
+        reasons[k] += "; that is no chaos beside a state of rest or in a linear system"
+    return replace(judged, verdicts=verdicts, reasons=tuple(reasons))
+
+
+def told(verdict: Regularity, limit: float) -> str:
+    """Return a verdict in words: with a regular orbit stands the rate above which chaos would have been seen.
+
+    Examples
+    --------
+    >>> told(Regularity.REGULAR, 0.004), told(Regularity.CHAOTIC, 0.004)
+    ('regular, no rate above 0.004', 'chaotic')
+    """
+    return f"regular, no rate above {limit:.2g}" if verdict is Regularity.REGULAR else verdict.value
 
 
 def quarters(t: Array) -> tuple[slice, slice]:
@@ -150,7 +170,7 @@ def quarters(t: Array) -> tuple[slice, slice]:
 def _reason(verdict: Regularity, megno: float, late: float, span: float, limit: float) -> str:
     seen = f"mean MEGNO {megno:.3g}, and e^{late:.2g} of growth from the second quarter to the last"
     match verdict:
-        case Regularity.CHAOTIC:
+        case Regularity.CHAOTIC | Regularity.UNSTABLE:
             return f"neighbours part exponentially: {seen}"
         case Regularity.REGULAR:
             return (

@@ -16,6 +16,7 @@ from canon.flow.method.method_text import method_of
 from canon.flow.request import Request
 from canon.flow.system_request import any_task
 from canon.flow.tangent.deviation_growth import DeviationGrowth
+from canon.flow.tangent.growth_without_chaos import rests_or_is_linear
 from canon.kernel.program.hamilton_equations import exact_number
 
 if TYPE_CHECKING:
@@ -128,6 +129,7 @@ def reversal_test(
         task.single,
         str(chosen),
         np.zeros(len(size)),
+        rests_or_is_linear(task),
     )
     return indicator_of("reversal error", growth, history, _judged(history, floor, float(spans[-1])))
 

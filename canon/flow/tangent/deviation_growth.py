@@ -20,6 +20,7 @@ from canon.flow.request import Request
 from canon.flow.run.values_at_states import energy_and_rates, size_of_energy
 from canon.flow.system_request import any_task, refuse_contacts
 from canon.flow.tangent.compiled_deviations import CompiledDeviations
+from canon.flow.tangent.growth_without_chaos import rests_or_is_linear
 from canon.flow.tangent.tangent_loop import has_tangent_loop
 from canon.flow.tangent.variational_deviations import VariationalDeviations
 from canon.kernel.llvm.number_types import DOUBLE
@@ -68,6 +69,8 @@ class DeviationGrowth:
     energy_error
         How much H has changed at the end, as part of it or of a tenth of its terms, shape (orbits,); 0 where H is no
         constant.
+    without_chaos
+        Whether an orbit rests, or its system is linear, so that exponential growth is no chaos, shape (orbits,).
     """
 
     t: Array
@@ -78,6 +81,7 @@ class DeviationGrowth:
     single: bool
     method: str
     energy_error: Array
+    without_chaos: Array
 
 
 @dataclass(frozen=True)
@@ -253,8 +257,8 @@ def deviation_growth(
     lost = ~np.isfinite(log).all(axis=0)
     left_at = np.where(lost.any(axis=0), t[np.argmax(lost, axis=0)], np.inf)
     states = np.concatenate([each[2] for each in found], axis=1)
-    error = _energy_error(task, states)
-    return DeviationGrowth(t, log, noted, states, left_at, task.single, str(task.method), error)
+    error, plain = _energy_error(task, states), rests_or_is_linear(task)
+    return DeviationGrowth(t, log, noted, states, left_at, task.single, str(task.method), error, plain)
 
 
 def _energy_error(task: Task, last: Array) -> Array:

@@ -167,7 +167,12 @@ def _exponent(case: Case) -> dict[str, Array]:
     return {"t": t, "largest": found.log_size[later] / t}
 
 
-OF_VERDICTS = {Regularity.REGULAR: -1.0, Regularity.NOT_KNOWN: 0.0, Regularity.CHAOTIC: 1.0}
+OF_VERDICTS = {
+    Regularity.REGULAR: -1.0,
+    Regularity.NOT_KNOWN: 0.0,
+    Regularity.CHAOTIC: 1.0,
+    Regularity.UNSTABLE: 2.0,
+}
 """Verdicts as numbers, which arrays of many cases hold."""
 
 
