@@ -214,6 +214,27 @@ def counting_up(t, y):
     return [y[1], -n]
 
 
+def until_small(t, y):
+    """Kepler's equation by repeated substitution."""
+    E = t
+    while abs(E - 0.3 * np.sin(E) - t) > 1e-3:
+        E = t + 0.3 * np.sin(E)
+    return [y[1], -y[0] + E]
+
+
+def eight_times(t, y):
+    E = t
+    for _ in range(8):
+        E = t + 0.3 * np.sin(E)
+    return [y[1], -y[0] + E]
+
+
+def importing_inside(t, y):
+    import math as inside
+
+    return [y[1], -inside.sin(y[0])]
+
+
 def contradicting_itself(t, y):
     assert y[0] > 0
     assert y[0] <= 0
@@ -223,6 +244,12 @@ def contradicting_itself(t, y):
 REFUSED: dict[str, tuple[Callable[..., Any], int, str]] = {
     "a root in the plane": (lambda t, y: [np.sqrt(y[0] + 1j * y[1]).real, 0], 2, "is taken of a complex number"),
     "questions without end": (counting_up, 2, "it asks more than 100 times for the sign of something that moves"),
+    "a loop until something is small": (
+        until_small, 2, "nested more than 60 deep, as a loop does that runs until something that moves is small",
+    ),
+    "math, imported inside": (
+        importing_inside, 2, "the number of something that moves, as an index does, or math imported inside it",
+    ),
     "assertions": (contradicting_itself, 2, "its own assertions rule out all ways through it"),
     "where": (lambda t, y: [np.where(y > 0)[0].size, y[0]], 2, "with one argument asks where something that moves"),
     "a long spline": (lambda t, y: [LONG(y[0]), y[0]], 2, "a spline of more than 60 pieces"),
@@ -247,6 +274,11 @@ def test_what_has_no_formulas_is_refused_with_the_reason_and_what_to_write(what:
         field_of_function(f, n)
     assert "can't be read as formulas" in str(caught.value)
     assert "write such equations as canon.VectorField" in str(caught.value)
+
+
+def test_what_is_told_instead_of_a_loop_until_something_is_small_can_be_read() -> None:
+    field = field_of_function(eight_times, 2)
+    assert values(field, 0.7, [0.2, 0.1]) == pytest.approx(eight_times(0.7, [0.2, 0.1]), rel=1e-15)
 
 
 def test_whole_parts_of_the_time_are_written_out_up_to_a_number_of_steps() -> None:

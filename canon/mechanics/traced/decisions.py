@@ -16,14 +16,20 @@ from canon.expression.symbols.symbol import time
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from sympy import Expr
+    from sympy import Basic, Expr
     from sympy.logic.boolalg import Boolean
 
 __all__ = ["Decisions", "along_all_ways"]
 
 MOST_WAYS = 400
-MOST_OPERATIONS = 300
-"""Operations of a question that is written in one way, whichever side it was asked from."""
+MOST_OPERATIONS = 500
+"""Parts of a question that is written in one way, whichever side it was asked from."""
+
+MOST_OF_TIME = 40
+"""Parts of a question about the time alone that is answered where it is asked too early or too late to change."""
+
+MOST_NESTED = 60
+"""How deep a formula may be nested whose sign is asked for; each turn of a loop makes it deeper."""
 
 MOST_QUESTIONS = 100
 """Questions of one call; a loop that runs until something that moves is small asks without end."""
@@ -54,11 +60,18 @@ class Decisions:
         TypeError
             There were too many.
         """
-        if isinstance(condition, Relational) and sp.count_ops(condition) <= MOST_OPERATIONS:
+        written, nested = _size_and_depth(condition, {})
+        if nested > MOST_NESTED:
+            raise TypeError(
+                f"it asks for the sign of a formula that is nested more than {MOST_NESTED} deep, as a loop does that "
+                "runs until something that moves is small: run it a fixed number of times"
+            )
+        if isinstance(condition, Relational) and written <= MOST_OPERATIONS:
             condition = cast("Boolean", condition.canonical)
         if condition in (sp.true, sp.false):
             return bool(condition)
-        if self.span is not None and condition not in self._known and condition.free_symbols == {time}:
+        of_time = written <= MOST_OF_TIME and condition.free_symbols == {time}
+        if self.span is not None and condition not in self._known and of_time:
             ends = {_holds_at(condition, t) for t in self.span}
             if ends in ({True}, {False}):
                 return ends == {True}
@@ -72,6 +85,14 @@ class Decisions:
             self.asked.append((condition, answer))
             self._known |= {condition: answer, sp.Not(condition): not answer}
         return self._known[condition]
+
+
+def _size_and_depth(part: Basic, known: dict[Basic, tuple[int, int]]) -> tuple[int, int]:
+    """Return how many parts a formula has when it is written out, and how deep; what occurs twice is looked at once."""
+    if part not in known:
+        inner = [_size_and_depth(each, known) for each in part.args]
+        known[part] = (1 + sum(size for size, _ in inner), 1 + max((depth for _, depth in inner), default=0))
+    return known[part]
 
 
 def _holds_at(condition: Boolean, t: float) -> bool | None:

@@ -100,7 +100,9 @@ class TracedNumber:
         return bool(_differs_from_zero(self))
 
     def _asked(self, *_: Any) -> Any:
-        raise TypeError("it asks for the number of something that moves")
+        raise TypeError(
+            "it asks for the number of something that moves, as math does that is imported inside it"
+        )
 
     __float__ = __int__ = __index__ = __complex__ = _asked
 
