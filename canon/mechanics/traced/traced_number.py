@@ -101,7 +101,7 @@ class TracedNumber:
 
     def _asked(self, *_: Any) -> Any:
         raise TypeError(
-            "it asks for the number of something that moves, as math does that is imported inside it"
+            "it asks for the number of something that moves, as an index does, or math imported inside it"
         )
 
     __float__ = __int__ = __index__ = __complex__ = _asked
