@@ -12,7 +12,7 @@ from canon.expression.symbols.repeated_sum import written_out
 from canon.expression.symbols.symbol import Coordinate, acceleration, time, velocity, without_dynamicsymbols
 from canon.expression.symbols.symbols_and_functions import symbols_and_functions
 from canon.expression.symbols.user_input import given_expression, given_kind
-from canon.mechanics.algebra.substitution import exchanged
+from canon.mechanics.algebra.substitution import exchanged, refuse_unordered
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -60,18 +60,25 @@ def coordinate(x: Any) -> Symbol:
 def coordinate_symbols(q: Any) -> tuple[Symbol, ...]:
     """Return the symbols of one coordinate or of several.
 
+    Raises
+    ------
+    TypeError
+        Where they are in a dictionary or a set, or something else is among them.
+
     Examples
     --------
     >>> from sympy.physics.mechanics import dynamicsymbols
     >>> coordinate_symbols(dynamicsymbols("x y"))
     (x, y)
     """
+    refuse_unordered(q)
     several = (q,) if isinstance(q, sp.Basic) or not hasattr(q, "__iter__") else q
     return tuple(coordinate(x) for x in several)
 
 
 def plain_all(functions: Sequence[Any], q: Sequence[Symbol], t: Symbol = time) -> tuple[Expr, ...]:
-    """Return :func:`plain` of each."""
+    """Return :func:`plain` of each; TypeError where they are in a dictionary or a set, which has no order."""
+    refuse_unordered(functions)
     return tuple(plain(f, q, t) for f in functions)
 
 

@@ -23,6 +23,7 @@ __all__ = [
     "carried",
     "entry",
     "exchanged",
+    "refuse_unordered",
     "shortened",
     "size",
     "substitute",
@@ -91,15 +92,34 @@ def as_tuple(given: Sequence[Expr] | sp.MatrixBase | Expr) -> tuple[Expr, ...]:
         )
     if isinstance(given, Expr):
         return (given,)
+    refuse_unordered(given)
+    if not hasattr(given, "__iter__") or isinstance(given, str):
+        return (given_expression(given),)
+    return tuple(given_expression(f) for f in given)
+
+
+def refuse_unordered(given: object) -> None:
+    """Refuse a dictionary or a set in the place of a list: by its keys or members nothing is known to be meant.
+
+    Raises
+    ------
+    TypeError
+        It is one.
+
+    Examples
+    --------
+    >>> refuse_unordered([1, 2])
+    >>> refuse_unordered({1, 2})
+    Traceback (most recent call last):
+        ...
+    TypeError: {1, 2}: members of a set have no order that says which is whose; give a list, in the order of the co...
+    """
     if isinstance(given, Mapping | Set):
         kind = "keys of a dictionary" if isinstance(given, Mapping) else "members of a set"
         raise TypeError(
             f"{reprlib.repr(given)}: {kind} have no order that says which is whose; give a list, in the order of the "
             "coordinates"
         )
-    if not hasattr(given, "__iter__") or isinstance(given, str):
-        return (given_expression(given),)
-    return tuple(given_expression(f) for f in given)
 
 
 def terms_if_expanded(f: sp.Basic) -> float:

@@ -7,18 +7,19 @@ docs/conventions.md).
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.expression.symbols.symbol import acceleration, momentum, time_derivative, velocity
-from canon.expression.symbols.user_input import all_of, given_kind
+from canon.expression.symbols.user_input import all_of, by_symbol, given_kind, listed
 from canon.mechanics.algebra.all_vanish import all_vanish, having_values
-from canon.mechanics.algebra.dynamicsymbols import plain, plain_all
+from canon.mechanics.algebra.dynamicsymbols import coordinate, plain, plain_all
 from canon.mechanics.algebra.potential import potential
-from canon.mechanics.algebra.substitution import exchanged
+from canon.mechanics.algebra.substitution import exchanged, refuse_unordered
 from canon.mechanics.hamilton.bracket import poisson_bracket
 from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 from canon.mechanics.lagrange.lagrangian import Lagrangian
@@ -123,7 +124,10 @@ def poissons_theorem(
 
 
 def noether_charge(
-    lagrangian: Lagrangian, xi: Sequence[Expr], tau: Expr = sp.S.Zero, K: Expr = sp.S.Zero
+    lagrangian: Lagrangian,
+    xi: Sequence[Expr] | Mapping[Symbol, Expr],
+    tau: Expr = sp.S.Zero,
+    K: Expr = sp.S.Zero,
 ) -> Expr:
     """Return Σ p ξ − E τ − K, constant along the motion where ξ, τ, K make a symmetry.
 
@@ -132,7 +136,7 @@ def noether_charge(
     lagrangian
         The system.
     xi
-        Displacements of the coordinates ξ(q, t).
+        Displacements of the coordinates ξ(q, t), in their order or by coordinate, ``{x: -y, y: x}``.
     tau
         Displacement of the time τ(q, t).
     K
@@ -153,14 +157,14 @@ def noether_charge(
 
 def is_symmetry(
     lagrangian: Lagrangian,
-    xi: Sequence[Expr],
+    xi: Sequence[Expr] | Mapping[Symbol, Expr],
     tau: Expr = sp.S.Zero,
     K: Expr = sp.S.Zero,
     domain: Domain | None = None,
 ) -> Verdict:
     """Tell whether ξ, τ change L dt by dK: ξ·L_q + (ξ̇ − q̇ τ̇)·L_v + τ L_t + τ̇ L = K̇ identically.
 
-    What forces without a potential do along the displacements, Q·(ξ − q̇ τ), is added to the change of L.
+    ξ is given in the order of the coordinates, or by coordinate. What forces without a potential do along the displacements, Q·(ξ − q̇ τ), is added to the change of L.
 
     Examples
     --------
@@ -284,8 +288,20 @@ def _same_coordinates(first: Lagrangian, second: Lagrangian) -> tuple[tuple[Symb
 
 
 def _displacements(
-    lagrangian: Lagrangian, xi: Sequence[Expr], tau: Expr, K: Expr
+    lagrangian: Lagrangian, xi: Sequence[Expr] | Mapping[Symbol, Expr], tau: Expr, K: Expr
 ) -> tuple[tuple[Expr, ...], Expr, Expr]:
+    if isinstance(xi, Mapping):
+        xi = _by_coordinate(xi, lagrangian.q)
+    refuse_unordered(xi)
     all_of(xi, len(lagrangian.q), "xi", "coordinates")
     *moves, delay, gain = plain_all((*xi, tau, K), lagrangian.q, lagrangian.t)
     return tuple(moves), delay, gain
+
+
+def _by_coordinate(xi: Mapping[Any, Expr], q: Sequence[Symbol]) -> list[Expr]:
+    """Return displacements in the order of the coordinates."""
+    given = {key if isinstance(key, str) else coordinate(key): move for key, move in xi.items()}
+    named = by_symbol(given, q, "xi")
+    if missing := [s for s in q if s not in named]:
+        raise ValueError(f"xi has no entry for {listed(missing)}: give one for each coordinate, 0 where it stays")
+    return [named[s] for s in q]

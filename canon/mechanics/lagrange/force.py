@@ -12,9 +12,11 @@ import sympy as sp
 from sympy import Expr, Symbol
 
 from canon.expression.symbols.symbol import time, time_derivative, velocity
+from canon.expression.symbols.input_in_words import described
 from canon.expression.symbols.user_input import all_of, counted, given_expression
 from canon.mechanics.algebra.all_vanish import all_vanish
 from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain, plain_all
+from canon.mechanics.algebra.substitution import refuse_unordered
 from canon.mechanics.lagrange.body import RigidBody, kinetic_energy
 from canon.mechanics.lagrange.lagrangian import Lagrangian, forces_in_order
 from canon.mechanics.lagrange.quasi_velocity import Kinematics
@@ -61,7 +63,13 @@ def generalized_forces(
     (F*l*cos(theta),)
     """
     q = coordinate_symbols(q)
-    forces, positions = (tuple(plain_all(row, q, t) for row in rows) for rows in (forces, positions))
+    forces, positions = (
+        [plain_all(row, q, t) for row in _vectors(rows, what)]
+        for rows, what in ((forces, "forces"), (positions, "positions"))
+    )
+    all_of(positions, len(forces), "positions", "forces")
+    for k, (force, position) in enumerate(zip(forces, positions, strict=True)):
+        all_of(position, len(force), f"positions[{k}]", "components of its force")
     return tuple(
         sp.Add(
             *(
@@ -72,6 +80,20 @@ def generalized_forces(
         )
         for s in q
     )
+
+
+def _vectors(rows: Sequence[Sequence[Expr]], name: str) -> list[Sequence[Expr]]:
+    """Return vectors that were given in a list; a TypeError says where another thing is in a vector's place."""
+    refuse_unordered(rows)
+    vectors = list(rows) if hasattr(rows, "__iter__") else [rows]
+    for each in vectors:
+        refuse_unordered(each)
+        if isinstance(each, str) or not hasattr(each, "__iter__"):
+            raise TypeError(
+                f"{name} should be a list of vectors, one a point, such as [(F, 0)], and {described(each)} stands in "
+                "the place of a vector; write its components in brackets"
+            )
+    return vectors
 
 
 def generalized_torques(
@@ -89,7 +111,8 @@ def generalized_torques(
     (-M, M)
     """
     q = coordinate_symbols(q)
-    pairs = list(zip(plain_all(torques, q, t), plain_all(angles, q, t), strict=True))
+    torques, angles = plain_all(torques, q, t), plain_all(angles, q, t)
+    pairs = list(zip(torques, all_of(angles, len(torques), "angles", "torques"), strict=True))
     return tuple(sp.Add(*(torque * angle.diff(s) for torque, angle in pairs)) for s in q)
 
 

@@ -1,0 +1,65 @@
+"""What one found who came with systems of their own: arguments in another form than was meant, and what is said then."""
+
+from __future__ import annotations
+
+import pytest
+import sympy as sp
+
+from canon import Hamiltonian, Lagrangian, coordinates
+from canon.mechanics import (
+    generalized_forces,
+    generalized_torques,
+    is_symmetry,
+    noether_charge,
+    routhian,
+)
+
+TH, PH = coordinates("th ph")
+ROTOR = Lagrangian(TH.dot**2 / 2 + sp.sin(TH) ** 2 * PH.dot**2 / 2 + sp.cos(TH), [TH, PH])
+X = coordinates("x")
+SPRING = Hamiltonian(X.momentum**2 / 2 + X**2 / 2, [X], [X.momentum])
+
+
+def test_displacements_are_taken_by_coordinate() -> None:
+    assert noether_charge(ROTOR, {PH: 1, TH: 0}) == noether_charge(ROTOR, [0, 1]) == ROTOR.momenta[1]
+    assert is_symmetry(ROTOR, {PH: 1, TH: 0}).holds
+    assert is_symmetry(ROTOR, {"th": 0, "ph": 1}).holds
+    assert is_symmetry(ROTOR, {TH: 1, PH: 0}).fails  # the wrong twin: the other coordinate
+
+
+@pytest.mark.parametrize(
+    ("xi", "told"),
+    [
+        ({PH: 1}, "xi has no entry for th"),
+        ({PH: 1, TH: 0, X: 2}, "xi names x, which is none of th, ph"),
+        ({0, 1}, "members of a set have no order"),
+    ],
+)
+def test_displacements_that_do_not_say_which_is_whose_are_refused(xi: object, told: str) -> None:
+    for ask in (noether_charge, is_symmetry):
+        with pytest.raises((TypeError, ValueError), match=told):
+            ask(ROTOR, xi)
+
+
+def test_coordinates_in_dictionaries_and_sets_are_refused() -> None:
+    p = X.momentum
+    for ask in (
+        lambda: Lagrangian(ROTOR.L, {TH: 1, PH: 2}),
+        lambda: Lagrangian(ROTOR.L, {TH, PH}),
+        lambda: Hamiltonian(p**2, {X: 1}, {p: 0}),
+        lambda: routhian(ROTOR, {PH: 0.3}),
+        lambda: generalized_torques({X: 1}, {X: 1}, [X]),
+        lambda: generalized_forces({X: 1}, [X], [X]),
+    ):
+        with pytest.raises(TypeError, match="have no order that says which is whose; give a list"):
+            ask()
+
+
+def test_a_force_is_a_vector() -> None:
+    with pytest.raises(TypeError, match=r"forces should be a list of vectors.*x stands in the place of a vector"):
+        generalized_forces([X], [X], [X])
+    with pytest.raises(ValueError, match="positions has 2 entries for 1 forces; give one each"):
+        generalized_forces([(1, 0)], [(X, 0), (0, X)], [X])
+    with pytest.raises(ValueError, match="angles has 1 entry for 2 torques"):
+        generalized_torques([1, 2], [X], [X])
+    assert generalized_forces([(3, 0)], [(2 * X, 0)], [X]) == (6,)
