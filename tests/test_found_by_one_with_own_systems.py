@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import pytest
 import sympy as sp
 
-from canon import Hamiltonian, Lagrangian, coordinates
+from canon import Hamiltonian, Lagrangian, Study, coordinates, results_of, run_study
 from canon.mechanics import (
     generalized_forces,
     generalized_torques,
@@ -13,6 +15,12 @@ from canon.mechanics import (
     noether_charge,
     routhian,
 )
+from canon.study.cases.mend import mend
+from canon.study.cases.run_study import resume
+from canon.study.cases.store import Store, StoreError
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 TH, PH = coordinates("th ph")
 ROTOR = Lagrangian(TH.dot**2 / 2 + sp.sin(TH) ** 2 * PH.dot**2 / 2 + sp.cos(TH), [TH, PH])
@@ -63,3 +71,31 @@ def test_a_force_is_a_vector() -> None:
     with pytest.raises(ValueError, match="angles has 1 entry for 2 torques"):
         generalized_torques([1, 2], [X], [X])
     assert generalized_forces([(3, 0)], [(2 * X, 0)], [X]) == (6,)
+
+
+def a_study() -> Study:
+    return Study.of(system="henon-heiles", method="rk4", step=0.1, span=30.0, samples=256)
+
+
+def test_results_of_a_file_that_is_not_there_are_not_an_empty_study(tmp_path: Path) -> None:
+    missing = tmp_path / "missing.sqlite"
+    for ask in (results_of, resume, mend):
+        with pytest.raises(FileNotFoundError, match="there is no file"):
+            ask(missing)
+        assert not missing.exists()
+    missing.touch()
+    with pytest.raises(FileNotFoundError, match="is empty, and no results of a study"):
+        results_of(missing)
+    assert not missing.stat().st_size
+    run_study(a_study(), missing)  # the twin: an empty file is taken to write to
+    assert len(results_of(missing)) == 1
+
+
+@pytest.mark.parametrize("content", [b"x", b"SQLite format", b"notes of mine\n" * 100])
+def test_a_file_of_another_kind_stays_as_it_is(tmp_path: Path, content: bytes) -> None:
+    file = tmp_path / "notes.txt"
+    file.write_bytes(content)
+    for ask in (lambda: results_of(file), lambda: run_study(a_study(), file), lambda: Store(file)):
+        with pytest.raises(StoreError, match="no SQLite file; give another file, for this one stays"):
+            ask()
+        assert file.read_bytes() == content

@@ -269,10 +269,10 @@ def _print_damaged(rows: Sequence[DamagedRow | DamagedFile], store: Store) -> No
 
 def _existing(path: Path) -> Store:
     """Return the store in a file; reading should not make an empty one where a name is mistyped."""
-    from canon.study.cases.store import Store
+    from canon.study.cases.store import existing_store
 
     _require_file(path)
-    return Store(path)
+    return existing_store(path)
 
 
 def _require_file(path: Path) -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from canon.study.cases.chunk_damage import DamagedFile, set_chunks_aside
 from canon.study.cases.row_checksum import COLUMNS, DamagedRow, checked, with_checksum
-from canon.study.cases.store import PATIENCE, Store, StoreError
+from canon.study.cases.store import PATIENCE, NoSuchStore, Store, StoreError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -73,6 +73,8 @@ def mend(path: str | Path) -> Mended:
     ()
     """
     file = Path(path)
+    if not file.exists():
+        raise NoSuchStore(f"there is no file {file} to mend")
     if _is_whole(file):
         return Mended(Store(file), None, (), set_chunks_aside(Store(file)))
     rows, lost = _salvaged(file)

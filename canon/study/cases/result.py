@@ -17,7 +17,7 @@ import numpy as np
 from canon.flow.method.method_text import method_of
 from canon.frozen_mapping import FrozenMapping
 from canon.study.cases.case import Case, case_in, part_count
-from canon.study.cases.store import Store
+from canon.study.cases.store import Store, existing_store
 from canon.study.kept.chunk_file import Chunk, ChunkFolder
 from canon.study.kept.kept_arrays import Kept
 from canon.study.kept.kept_dataset import dataset_of_kept
@@ -303,6 +303,8 @@ def results_of(store: Store | str | Path) -> Results:
 
     Raises
     ------
+    FileNotFoundError
+        There is no such file, or nothing in it.
     StoreError
         Where the file can't be read, or rows of it are damaged.
 
@@ -316,7 +318,7 @@ def results_of(store: Store | str | Path) -> Results:
     ...     [(result.state.value, result.setting, result.numbers["verdict"]) for result in results_of(file)]
     [('finished', 'verlet, h = 0.1', 'bounded')]
     """
-    store = store if isinstance(store, Store) else Store(Path(store))
+    store = store if isinstance(store, Store) else existing_store(store)
     records, parts, tags = store.records(), store.parts_done(), store.tags()
     found: list[Result] = []
     for key, inputs in store.cases().items():

@@ -15,7 +15,7 @@ from canon.expression.symbols.user_input import counted
 from canon.study.cases.case import Case, case_in, key_of, part_count, versions
 from canon.study.cases.checkpointed_run import Checkpoint, FailedRun, Outcome, advance
 from canon.study.cases.kept_of_case import FailedFunction, kept_arrays
-from canon.study.cases.store import Record, Store
+from canon.study.cases.store import Record, Store, existing_store
 from canon.study.errors import StudyError
 from canon.study.kept.chunk_file import Chunk, ChunkFolder
 from canon.study.kept.keep_choice import chosen_functions
@@ -123,8 +123,8 @@ def resume(
     in_flight: int | None = None,
     keep: Mapping[str, Function] | None = None,
 ) -> StudyStatus:
-    """Run the pending cases of a file; see :func:`run_study`."""
-    kept = store if isinstance(store, Store) else Store(Path(store))
+    """Run the pending cases of a file, which must be there; see :func:`run_study`."""
+    kept = store if isinstance(store, Store) else existing_store(store)
     kept.require_intact()
     cases = kept.cases()
     written = {key: case_in(cases[key]) for key in kept.pending()}

@@ -13,7 +13,7 @@ not matter whose it is.
 from __future__ import annotations
 
 import sqlite3
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -26,10 +26,13 @@ from canon.study.kept.chunk_file import Chunk, ChunkFolder
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 
-__all__ = ["DamagedRows", "Record", "Store", "StoreError"]
+__all__ = ["DamagedRows", "NoSuchStore", "Record", "Store", "StoreError", "existing_store"]
 
 PATIENCE = 60.0
 """Seconds to wait while another process writes."""
+
+HEADER = b"SQLite format 3\0"
+"""What every SQLite file begins with."""
 
 SHOWN = 5
 """Damaged rows that an error names."""
@@ -47,6 +50,10 @@ ON CONFLICT (key) DO UPDATE SET part = excluded.part, point = excluded.point, ch
 WHERE excluded.part > part
 """
 """Keeps a checkpoint where there is no record, nor one that is further along."""
+
+
+class NoSuchStore(StoreError, FileNotFoundError):
+    """Raised where a study is to be read from a file that is not there, or has nothing in it."""
 
 
 class DamagedRows(StoreError):
@@ -95,7 +102,12 @@ class Store:
     Parameters
     ----------
     path
-        The file; it is made where there is none.
+        The file; it is made where there is none, or an empty one.
+
+    Raises
+    ------
+    StoreError
+        The file is one of another kind, which stays as it is.
 
     Examples
     --------
@@ -113,6 +125,8 @@ class Store:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "path", Path(self.path))
+        if not _begins_as_sqlite(self.path):
+            raise StoreError(f"{self.path}: it is no SQLite file; give another file, for this one stays as it is")
         with self._open() as connection:
             checked_tables(self.path, connection)
 
@@ -334,3 +348,34 @@ class Store:
         }
         remedy = next((remedy for sign, remedy in remedies.items() if sign in told), told)
         return f"{self.path}: {remedy} (SQLite says: {told})"
+
+
+def existing_store(path: str | Path) -> Store:
+    """Return the store in a file; reading makes no empty one where a name is mistyped.
+
+    Raises
+    ------
+    NoSuchStore
+        There is no such file, or nothing in it.
+    StoreError
+        It is no results file.
+    """
+    file = Path(path)
+    if not file.exists():
+        raise NoSuchStore(
+            f"there is no file {file}; run_study(study, {str(file)!r}), or 'canon study run STUDY.toml', makes one"
+        )
+    if file.is_file() and not file.stat().st_size:
+        raise NoSuchStore(f"the file {file} is empty, and no results of a study; give another file")
+    return Store(file)
+
+
+def _begins_as_sqlite(path: Path) -> bool:
+    """Tell whether a file is an SQLite file by its first bytes, or empty; SQLite overwrites one of a single byte.
+
+    What can't be read, SQLite tells of.
+    """
+    with suppress(OSError), path.open("rb") as file:
+        begin = file.read(len(HEADER))
+        return begin in (b"", HEADER)
+    return True
