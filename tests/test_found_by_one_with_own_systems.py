@@ -1,4 +1,4 @@
-"""What one found who came with systems of their own: arguments in another form than was meant, and what is said then."""
+"""What one found who came with systems of their own: arguments in another form than was meant, and what is said."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import pytest
 import sympy as sp
 
-from canon import Hamiltonian, Lagrangian, Study, coordinates, results_of, run_study
+import canon.plot
+from canon import Hamiltonian, Lagrangian, Study, coordinates, propagate, results_of, run_study
 from canon.mechanics import (
     generalized_forces,
     generalized_torques,
@@ -21,6 +22,8 @@ from canon.study.cases.store import Store, StoreError
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from canon.flow.trajectory import Trajectory
 
 TH, PH = coordinates("th ph")
 ROTOR = Lagrangian(TH.dot**2 / 2 + sp.sin(TH) ** 2 * PH.dot**2 / 2 + sp.cos(TH), [TH, PH])
@@ -64,7 +67,9 @@ def test_coordinates_in_dictionaries_and_sets_are_refused() -> None:
 
 
 def test_a_force_is_a_vector() -> None:
-    with pytest.raises(TypeError, match=r"forces should be a list of vectors.*x stands in the place of a vector"):
+    with pytest.raises(
+        TypeError, match=r"forces should be a list of vectors.*x stands in the place of a vector"
+    ):
         generalized_forces([X], [X], [X])
     with pytest.raises(ValueError, match="positions has 2 entries for 1 forces; give one each"):
         generalized_forces([(1, 0)], [(X, 0), (0, X)], [X])
@@ -99,3 +104,46 @@ def test_a_file_of_another_kind_stays_as_it_is(tmp_path: Path, content: bytes) -
         with pytest.raises(StoreError, match="no SQLite file; give another file, for this one stays"):
             ask()
         assert file.read_bytes() == content
+
+
+@pytest.fixture(scope="module")
+def motion() -> Trajectory:
+    return propagate(SPRING, (0, 30), [1, 0], samples=300)
+
+
+def test_every_plot_says_what_it_draws(motion: Trajectory) -> None:
+    pytest.importorskip("matplotlib")
+    of_one = [each for each in canon.plot.__all__ if each.startswith("plot_")]
+    wrong = {
+        "plot_section": lambda f: f(motion, "x", "p_x"),
+        "plot_chaos_map": lambda f: f(motion, [0], [0]),
+    }
+    for name in of_one:
+        function = getattr(canon.plot, name)
+        with pytest.raises(TypeError, match=r"should be an? .*, not .*; "):
+            wrong.get(name, lambda f: f("x"))(function)
+    assert len(of_one) == 13
+    for name, given, told in (
+        (
+            "plot_block_means",
+            motion,
+            r"should be a Drift or a Result, not a Trajectory .*; drift\(motion\) returns one",
+        ),
+        ("plot_errors", motion, "plot_energy_error draws motions"),
+        ("plot_phase_portrait", [motion, 1], "should be a Trajectory, not 1; propagate"),
+        ("plot_drift_by_step", [motion], r"study\.rows"),
+    ):
+        with pytest.raises(TypeError, match=told):
+            getattr(canon.plot, name)(given)
+
+
+def test_axes_are_axes(motion: Trajectory) -> None:
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    for ask in (canon.plot.plot_phase_portrait, canon.plot.plot_energy_error):
+        with pytest.raises(
+            TypeError, match=r"ax should be an Axes, not the text 'z'; plt\.subplots\(\) makes one"
+        ):
+            ask(motion, "z")
+        figure, axes = pyplot.subplots()
+        assert ask(motion, axes) is axes  # the twin
+        pyplot.close(figure)

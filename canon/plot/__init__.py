@@ -1,7 +1,8 @@
 """Figures by matplotlib: functions that take Axes and return Axes.
 
-Every function draws into the Axes it is given, or into a new figure, and returns the Axes. matplotlib is
-loaded when the first picture is asked for.
+Every function draws into the Axes it is given, or into a new figure, and returns the Axes; but ``plot_errors`` draws
+panels in a new figure and returns a list of Axes, and ``animate_scene`` writes a file. matplotlib is loaded when the
+first picture is asked for.
 """
 
 from __future__ import annotations

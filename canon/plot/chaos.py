@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.flow.chaos.lyapunov import LyapunovSpectrum
-from canon.plot.style import COLOURS, new_axes, tidy
+from canon.plot.style import COLOURS, new_axes, tidy, to_draw
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -64,9 +64,15 @@ def plot_section(
         Where matplotlib is not installed.
     KeyError
         There is no such variable.
+    TypeError
+        It is no section.
     ValueError
         There is not one verdict for each orbit.
     """
+    from canon.flow.chaos.poincare_section import PoincareSection
+
+    instead = "poincare_section(…) finds one; plot_poincare_section draws the recorded events of a motion"
+    to_draw(section, PoincareSection, "plot_section", instead)
     axes, across, up = new_axes(ax), section[x], section[y]
     if verdicts is None:
         axes.scatter(across, up, s=size, c=[COLOURS[k % len(COLOURS)] for k in section.orbit], linewidths=0)
@@ -117,7 +123,13 @@ def plot_chaos_map(
         Where matplotlib is not installed.
     ValueError
         There is not one place for each orbit, two are the same, or the places are no grid.
+    TypeError
+        It is no indicator.
     """
+    from canon.flow.chaos.chaos_indicators import ChaosIndicator
+
+    instead = "megno(…), sali(…) and lyapunov_spectrum(…) return one"
+    to_draw(indicator, (ChaosIndicator, LyapunovSpectrum), "plot_chaos_map", instead)
     axes = new_axes(ax)
     values, verdict = _values(indicator)
     columns, column = _line(across, values.size)

@@ -9,8 +9,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.plot.case_labels import error_symbol, labels_of
-from canon.plot.phase import several
-from canon.plot.style import COLOURS, GREY, LINES, label_ends, logarithmic, new_axes, tidy
+from canon.plot.style import (
+    COLOURS,
+    GREY,
+    LINES,
+    all_to_draw,
+    label_ends,
+    logarithmic,
+    new_axes,
+    tidy,
+    to_draw,
+)
 from canon.study.energy_drift.envelope import envelope_of
 
 if TYPE_CHECKING:
@@ -54,6 +63,8 @@ def plot_energy_error(
     ------
     PlotError
         Where matplotlib is not installed.
+    TypeError
+        It is nothing of these.
     """
     axes = new_axes(ax)
     found = _lines(of)
@@ -83,7 +94,13 @@ def plot_errors(study: DriftStudy) -> list[Axes]:
     ------
     PlotError
         Where matplotlib is not installed.
+    TypeError
+        It is no drift study.
     """
+    from canon.study.energy_drift.drift_study import DriftStudy
+
+    instead = "drift_study(…) returns one; plot_energy_error draws motions"
+    to_draw(study, DriftStudy, "plot_errors", instead)
     first = new_axes(None)
     names = study.observables
     figure = first.get_figure(root=True)
@@ -120,7 +137,18 @@ def plot_block_means(
     ------
     PlotError
         Where matplotlib is not installed.
+    TypeError
+        It is neither.
     """
+    from canon.study.cases.result import Result
+    from canon.study.energy_drift.drift import Drift
+
+    to_draw(
+        found,
+        (Drift, Result),
+        "plot_block_means",
+        "drift(motion) returns one, and results_of(file) holds others",
+    )
     axes = new_axes(ax)
     when, mean, slope, slope_error, verdict = _means(found)
     middle, level = float(when.mean()), float(mean.mean())
@@ -191,13 +219,19 @@ def _line(name: str, t: Array, error: Array) -> list[_Line]:
 
 
 def _lines(of: DriftStudy | Trajectory | Sequence[Trajectory] | Sequence[Result]) -> _Lines:
+    from canon.flow.trajectory import Trajectory
     from canon.study.cases.result import Result
     from canon.study.energy_drift.drift_study import DriftStudy
 
     if isinstance(of, DriftStudy):
         return _lines_of_drifts(of)
     of_study, motions = [], []
-    for each in several(of):
+    instead = "give a motion, several in a list, a drift study, or results of a study"
+    for each in all_to_draw(of, (Trajectory, Result, DriftStudy), "plot_energy_error", instead):
+        if isinstance(each, DriftStudy):
+            raise TypeError(
+                "plot_energy_error draws one drift study at a time: call it with each, into Axes of its own"
+            )
         (of_study if isinstance(each, Result) else motions).append(each)
     if of_study:
         drawn = [result for result in of_study if result.numbers.get("curve")]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.plot.style import COLOURS, logarithmic, new_axes, tidy
+from canon.plot.style import COLOURS, logarithmic, new_axes, tidy, to_draw
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,6 +38,8 @@ def plot_ensemble_fan(of: Trajectory, ax: Axes | None = None, *, intervals: int 
     ------
     PlotError
         Where matplotlib is not installed.
+    TypeError
+        Where it is no trajectory.
     ValueError
         Where there are not at least four orbits, or no error at all.
 
@@ -52,6 +54,9 @@ def plot_ensemble_fan(of: Trajectory, ax: Axes | None = None, *, intervals: int 
     >>> plot_ensemble_fan(motion).get_title(loc="left")
     'verlet, 8 orbits'
     """
+    from canon.flow.trajectory import Trajectory
+
+    to_draw(of, Trajectory, "plot_ensemble_fan", "propagate(…) returns one, of starts of shape (2n, orbits)")
     if of.y.ndim != 3 or of.y.shape[2] < 4:
         raise ValueError(
             "a fan shows the spread over orbits: propagate four or more, states of shape (2n, orbits)"

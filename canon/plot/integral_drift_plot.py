@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.plot.style import COLOURS, MARKERS, new_axes, tidy
+from canon.plot.style import COLOURS, MARKERS, new_axes, tidy, to_draw
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,7 +25,17 @@ def plot_integral_drift(*drifts: IntegralDrift, ax: Axes | None = None) -> Axes:
         What :func:`canon.study.integral_drift` returned, one or several.
     ax
         Where to draw; a new figure if left out.
+
+    Raises
+    ------
+    TypeError
+        Where something else is among them.
     """
+    from canon.study.energy_drift.integral_drift import IntegralDrift
+
+    instead = "integral_drift(…) returns one; several stand one after another, and the Axes are given as ax="
+    for drift in drifts:
+        to_draw(drift, IntegralDrift, "plot_integral_drift", instead)
     axes = new_axes(ax)
     for k, drift in enumerate(drifts):
         again, own = divmod(k, len(COLOURS))

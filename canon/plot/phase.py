@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from canon.plot.style import COLOURS, new_axes, tidy
-
-T = TypeVar("T")
+from canon.plot.style import COLOURS, all_to_draw, new_axes, tidy, to_draw
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
     from canon.flow.run.event import Crossing
     from canon.flow.trajectory import Trajectory
 
-__all__ = ["plot_phase_portrait", "plot_poincare_section", "several"]
+__all__ = ["plot_phase_portrait", "plot_poincare_section"]
 
 
 def plot_phase_portrait(
@@ -44,11 +43,18 @@ def plot_phase_portrait(
     ------
     PlotError
         Where matplotlib is not installed.
+    TypeError
+        Where something else than trajectories is given.
     ValueError
         Where there is no such degree of freedom.
     """
+    from canon.flow.trajectory import Trajectory
+
+    motions = all_to_draw(
+        of, Trajectory, "plot_phase_portrait", "propagate(…) returns one; give several in a list"
+    )
     axes, names = new_axes(ax), set[tuple[str, str]]()
-    for index, motion in enumerate(several(of)):
+    for index, motion in enumerate(motions):
         q, p, name = _plane_of_motion(motion, degree)
         names.add(name)
         axes.plot(
@@ -94,6 +100,8 @@ def plot_poincare_section(
     ------
     PlotError
         Where matplotlib is not installed.
+    TypeError
+        Where the crossings are not given by name.
     ValueError
         Where there is no crossing, or no such degree of freedom.
 
@@ -108,6 +116,10 @@ def plot_poincare_section(
     >>> len(plot_poincare_section({"Taylor": met}).lines[0].get_xdata()) == len(met) > 5
     True
     """
+    instead = (
+        'give crossings by name, {"Taylor": motion.events}; plot_section draws what poincare_section found'
+    )
+    to_draw(of, Mapping, "plot_poincare_section", instead)
     axes = new_axes(ax)
     if reference is not None:
         q, p = _plane(_crossings(reference, "the reference"), degree)
@@ -119,13 +131,6 @@ def plot_poincare_section(
     axes.legend(frameon=False, fontsize="small", loc="center left", bbox_to_anchor=(1.0, 0.5), markerscale=2)
     tidy(axes)
     return axes
-
-
-def several(of: Trajectory | Sequence[T]) -> Sequence[Trajectory | T]:
-    """Return a sequence, be it of one trajectory."""
-    from canon.flow.trajectory import Trajectory
-
-    return [of] if isinstance(of, Trajectory) else of
 
 
 def _crossings(met: Sequence[Crossing] | ArrayLike, name: str) -> NDArray[np.float64]:

@@ -8,15 +8,13 @@ import numpy as np
 
 from canon.expression.symbols.user_input import counted
 from canon.plot.case_labels import error_symbol, labels_of
-from canon.plot.style import GREY, PlotError, new_axes
-from canon.study.cases.result import State
+from canon.plot.style import GREY, PlotError, all_to_draw, new_axes
+from canon.study.cases.result import Result, State
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from matplotlib.axes import Axes
-
-    from canon.study.cases.result import Result
 
 __all__ = ["plot_study_heatmap"]
 
@@ -44,6 +42,8 @@ def plot_study_heatmap(results: Sequence[Result], ax: Axes | None = None, *, wha
     ------
     PlotError
         Where matplotlib is not installed.
+    TypeError
+        Where they are no results.
     ValueError
         Where there is no case, or no such quantity.
 
@@ -59,12 +59,13 @@ def plot_study_heatmap(results: Sequence[Result], ax: Axes | None = None, *, wha
     """
     if what not in ("bound", "slope", "seconds"):
         raise ValueError(f"what={what!r}: there are bound, slope, seconds")
+    results = all_to_draw(results, Result, "plot_study_heatmap", "results_of(file) returns all of a study's")
     if not results:
         raise ValueError("there is no case to draw: give results of a study, results_of(file)")
     labels = labels_of(results)
     rows, columns = (list(dict.fromkeys(each)) for each in labels)
     places = [(columns.index(c), rows.index(r)) for r, c in zip(*labels, strict=True)]
-    axes = ax if ax is not None else _sized_axes(len(rows), len(columns))
+    axes = new_axes(ax) if ax is not None else _sized_axes(len(rows), len(columns))
     values = np.full((len(rows), len(columns)), np.nan)
     for result, (x, y) in zip(results, places, strict=True):
         if result.state is State.FINISHED:

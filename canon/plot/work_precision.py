@@ -8,7 +8,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from canon.plot.case_labels import labels_of
-from canon.plot.style import COLOURS, GREY, LINES, MARKERS, logarithmic, new_axes, tidy
+from canon.plot.style import (
+    COLOURS,
+    GREY,
+    LINES,
+    MARKERS,
+    all_to_draw,
+    logarithmic,
+    new_axes,
+    tidy,
+    to_draw,
+)
 from canon.study.method_choice.resonance import resonant_steps
 
 if TYPE_CHECKING:
@@ -62,9 +72,17 @@ def plot_work_precision(
     ------
     PlotError
         Where matplotlib is not installed.
+    TypeError
+        Where it is nothing that work_precision returned, or the choice is none.
     ValueError
         Where there is no such cost or error, or the choice was made for another error.
     """
+    from canon.study.method_choice.choose import Choice
+    from canon.study.method_choice.work_precision import WorkPrecision
+
+    to_draw(found, WorkPrecision, "plot_work_precision", "work_precision(…) returns one")
+    if chosen is not None:
+        to_draw(chosen, Choice, "plot_work_precision as chosen=", "choose(…) returns one")
     if cost not in _COSTS or error not in _ERRORS:
         raise ValueError(f"cost={cost!r}, error={error!r}: there are cpu, evaluations; position, energy")
     if chosen is not None and chosen.observable != error:
@@ -120,6 +138,8 @@ def plot_drift_by_step(
     ------
     PlotError
         Where matplotlib is not installed.
+    TypeError
+        Where it is nothing of these.
     ValueError
         Where there is no such quantity.
 
@@ -131,8 +151,15 @@ def plot_drift_by_step(
     >>> plot_drift_by_step(found).get_xlabel()
     'step (units of time)'
     """
+    from canon.study.cases.result import Result
+    from canon.study.energy_drift.drift_study import DriftRow
     from canon.study.method_choice.work_precision import WorkPrecision
 
+    instead = (
+        "give what work_precision(…) returned, the rows of drift studies, study.rows, or results_of(file)"
+    )
+    if not isinstance(of, WorkPrecision):
+        of = all_to_draw(of, (WorkPrecision, DriftRow, Result), "plot_drift_by_step", instead)
     if what not in ("bound", "slope") or (what == "slope" and isinstance(of, WorkPrecision)):
         raise ValueError(f"what={what!r}: there are bound and, of drift studies, slope")
     axes = new_axes(ax)

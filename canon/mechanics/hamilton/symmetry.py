@@ -164,7 +164,8 @@ def is_symmetry(
 ) -> Verdict:
     """Tell whether ξ, τ change L dt by dK: ξ·L_q + (ξ̇ − q̇ τ̇)·L_v + τ L_t + τ̇ L = K̇ identically.
 
-    ξ is given in the order of the coordinates, or by coordinate. What forces without a potential do along the displacements, Q·(ξ − q̇ τ), is added to the change of L.
+    ξ is given in the order of the coordinates, or by coordinate. What forces without a potential do along the
+    displacements, Q·(ξ − q̇ τ), is added to the change of L.
 
     Examples
     --------
@@ -303,5 +304,7 @@ def _by_coordinate(xi: Mapping[Any, Expr], q: Sequence[Symbol]) -> list[Expr]:
     given = {key if isinstance(key, str) else coordinate(key): move for key, move in xi.items()}
     named = by_symbol(given, q, "xi")
     if missing := [s for s in q if s not in named]:
-        raise ValueError(f"xi has no entry for {listed(missing)}: give one for each coordinate, 0 where it stays")
+        raise ValueError(
+            f"xi has no entry for {listed(missing)}: give one for each coordinate, 0 where it stays"
+        )
     return [named[s] for s in q]

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy import Expr, Symbol
 
-from canon.expression.symbols.symbol import time, time_derivative, velocity
 from canon.expression.symbols.input_in_words import described
+from canon.expression.symbols.symbol import time, time_derivative, velocity
 from canon.expression.symbols.user_input import all_of, counted, given_expression
 from canon.mechanics.algebra.all_vanish import all_vanish
 from canon.mechanics.algebra.dynamicsymbols import coordinate_symbols, plain, plain_all

@@ -126,7 +126,9 @@ class Store:
     def __post_init__(self) -> None:
         object.__setattr__(self, "path", Path(self.path))
         if not _begins_as_sqlite(self.path):
-            raise StoreError(f"{self.path}: it is no SQLite file; give another file, for this one stays as it is")
+            raise StoreError(
+                f"{self.path}: it is no SQLite file; give another file, for this one stays as it is"
+            )
         with self._open() as connection:
             checked_tables(self.path, connection)
 
