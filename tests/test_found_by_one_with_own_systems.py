@@ -8,8 +8,22 @@ import pytest
 import sympy as sp
 
 import canon.plot
-from canon import Hamiltonian, Lagrangian, Study, coordinates, propagate, results_of, run_study
+from canon import (
+    Event,
+    Hamiltonian,
+    Lagrangian,
+    Study,
+    choose,
+    coordinates,
+    drift,
+    drift_study,
+    propagate,
+    results_of,
+    run_study,
+    work_precision,
+)
 from canon.mechanics import (
+    VectorField,
     generalized_forces,
     generalized_torques,
     is_symmetry,
@@ -19,6 +33,7 @@ from canon.mechanics import (
 from canon.study.cases.mend import mend
 from canon.study.cases.run_study import resume
 from canon.study.cases.store import Store, StoreError
+from canon.study.errors import StudyError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -147,3 +162,62 @@ def test_axes_are_axes(motion: Trajectory) -> None:
         figure, axes = pyplot.subplots()
         assert ask(motion, axes) is axes  # the twin
         pyplot.close(figure)
+
+
+def test_motions_drifts_and_crossings_can_be_compared() -> None:
+    one, other = (propagate(SPRING, (0, 30), [1, 0], samples=300, events=[Event(X)]) for _ in range(2))
+    of_one, of_other = ((m, m.events[0], drift(m), m.error_estimate()) for m in (one, other))
+    for a, b in zip(of_one, of_other, strict=True):
+        assert a == a
+        assert a != b
+        assert b not in [a]
+        assert b in [a, b]
+        assert len({a, b, a}) == 2
+
+
+def test_an_observable_in_the_place_of_an_energy_is_asked_for_by_name() -> None:
+    y = coordinates("y")
+    field = VectorField([y, -X], [X, y])
+    bare = propagate(field, (0, 30), [1, 0], samples=300)
+    followed = propagate(field, (0, 30), [1, 0], samples=300, observables={"E": X**2 + y**2})
+    for ask in (drift, lambda m: m.energy_error, canon.plot.plot_energy_error):
+        with pytest.raises(
+            AttributeError, match=r"observables=\{name: expression\}, and judge that by its name"
+        ):
+            ask(bare)
+        with pytest.raises(
+            AttributeError, match=r"has followed E: judge that, drift\(motion, observable='E'\)"
+        ):
+            ask(followed)
+    assert drift(followed, observable="E").verdict.value == "round-off"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (
+            ([1, 0], 1000),
+            r"span should be a duration, one number, not a list .*before the state y0, {}\(system, 1000",
+        ),
+        (((0, 1000), [1, 0]), r"span = \(0, 1000\): give a duration, one number.*{}\(system, span, y0\)"),
+        (("long", [1, 0]), "span should be a duration, one number, not the text 'long'"),
+        ((-1.0, [1, 0]), "a span of -1.0 makes no sense"),
+    ],
+)
+def test_a_duration_is_one_number(arguments: tuple[object, ...], told: str) -> None:
+    with pytest.raises(StudyError, match=told.format("choose")):
+        choose(SPRING, *arguments, accuracy=1e-6)
+    with pytest.raises(StudyError, match=told.format("work_precision")):
+        work_precision(SPRING, *arguments, methods=["rk4"], steps=[0.1])
+
+
+def test_the_duration_of_a_drift_study_has_a_name() -> None:
+    told = r"the duration by name: drift_study\(system, y0, span=1000\)"
+    with pytest.raises(TypeError, match=told):
+        drift_study(SPRING, (0, 1000), [1, 0])
+    with pytest.raises(TypeError, match=told):
+        drift_study(SPRING, [1, 0], t_span=(0, 1000))
+    with pytest.raises(TypeError, match=r"drift_study has no argument method=: did you mean methods=\?"):
+        drift_study(SPRING, [1, 0], method="rk4")
+    with pytest.raises(StudyError, match=r"span = \(0, 1000\): give a duration"):
+        drift_study(SPRING, [1, 0], span=(0, 1000))

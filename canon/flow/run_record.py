@@ -211,8 +211,14 @@ class RunRecord:
         """
         if self.measured.energies is None:
             kind = "system" if self.moving is None else self.moving.kind
+            if names := self.task.names:
+                raise AttributeError(
+                    f"no energy is known of a {kind}, and the motion has followed {listed(names)}: judge that, "
+                    f"drift(motion, observable={names[0]!r}); motion.changes[{names[0]!r}] is how it changed"
+                )
             raise AttributeError(
-                f"no energy is known of a {kind}: give it as an observable, observables={{name: expression}}"
+                f"no energy is known of a {kind}: give it as an observable, observables={{name: expression}}, and "
+                "judge that by its name, drift(motion, observable=name)"
             )
         return self.measured.energies
 

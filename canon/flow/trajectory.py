@@ -35,9 +35,11 @@ if TYPE_CHECKING:
 __all__ = ["Interrupted", "Trajectory", "finished", "trajectory_of"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Trajectory:
     """A sampled motion and what it cost.
+
+    A motion is equal to itself only: whether two have the same states, ``numpy.array_equal(one.y, other.y)`` tells.
 
     Parameters
     ----------
@@ -93,7 +95,7 @@ class Trajectory:
     changes: Mapping[str, Array]
     statistics: Mapping[str, Statistics]
     events: tuple[Any, ...]
-    record: RunRecord = field(repr=False, compare=False)
+    record: RunRecord = field(repr=False)
 
     def __repr__(self) -> str:
         return (

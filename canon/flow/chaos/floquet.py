@@ -29,7 +29,7 @@ _LARGE = 2.0
 """Multipliers above this size are known better than their reciprocals."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FloquetMultipliers:
     """Floquet multipliers λ, in pairs λ, 1/λ, by how fast they let neighbours part.
 

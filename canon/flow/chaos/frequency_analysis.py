@@ -32,7 +32,7 @@ _EVEN = 1e-9
 _ROUNDS, _NEWTON = 4, 30
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FrequencyAnalysis:
     """Lines of a signal, z(t) ≈ Σ_k a_k exp(i ω_k t), the largest first.
 

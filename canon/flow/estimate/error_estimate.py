@@ -56,7 +56,7 @@ _FEWEST = 8
 """Samples from which growth is judged."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ErrorEstimate:
     """What is known of the error of a motion at its samples.
 

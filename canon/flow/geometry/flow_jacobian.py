@@ -42,7 +42,7 @@ _UNIT = 2**200
 """Jacobians are multiplied in whole numbers of 2⁻²⁰⁰, so that a defect is theirs and not the product's."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FlowJacobian:
     """The derivative M = ∂(q, p)(t)/∂(q, p)(start) of a motion by its starting state.
 

@@ -103,7 +103,7 @@ class Event:
         return self.direction == 0 or (self.direction > 0) == rising
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Crossing:
     """Crossing of an event: the time and the state at which g crossed zero.
 

@@ -145,7 +145,7 @@ def waiting_events(events: Sequence[PreparedEvent], so_far: Samples | None) -> l
     ]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Statistics:
     """Changes of a quantity since the start, gathered inside the loop between samples.
 

@@ -6,7 +6,7 @@ Rayleigh function F(q, q̇) gives Q = −∂F/∂q̇. A charge e in potentials A
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from sympy import Expr, Symbol
@@ -85,7 +85,7 @@ def generalized_forces(
 def _vectors(rows: Sequence[Sequence[Expr]], name: str) -> list[Sequence[Expr]]:
     """Return vectors that were given in a list; a TypeError says where another thing is in a vector's place."""
     refuse_unordered(rows)
-    vectors = list(rows) if hasattr(rows, "__iter__") else [rows]
+    vectors: list[Any] = list(rows) if hasattr(rows, "__iter__") else [rows]
     for each in vectors:
         refuse_unordered(each)
         if isinstance(each, str) or not hasattr(each, "__iter__"):

@@ -35,7 +35,7 @@ FEWEST_SAMPLES = 8
 """Samples a window needs at least."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Blocks:
     """Weighted means of an error series over windows, one window for each block of the run.
 

@@ -42,7 +42,7 @@ SEVERITY = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class DriftRow:
     """One method's run, and one observable along it.
 

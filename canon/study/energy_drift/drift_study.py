@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from difflib import get_close_matches
 from functools import partial
-from typing import TYPE_CHECKING, Any, overload
+from inspect import signature
+from typing import TYPE_CHECKING, Any, Never, overload
 
 import numpy as np
 
@@ -24,7 +26,7 @@ from canon.study.energy_drift.sample_times import GOLDEN, SAMPLES_PER_PERIOD, us
 from canon.study.errors import StudyError
 from canon.study.motion.extended_phase_space import driven
 from canon.study.motion.observables import ENERGY, observables_of
-from canon.study.motion.studied_motion import Subject, subject_of
+from canon.study.motion.studied_motion import Subject, checked_duration, subject_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -101,7 +103,7 @@ class DriftStudy:
 def drift_study(
     system: Scene | MovableSystem,
     y0: ArrayLike | Mapping[Any, Any] | str | None = None,
-    *,
+    *more: Never,
     methods: Sequence[MethodGiven] | None = None,
     step: float | None = None,
     tolerance: float | None = None,
@@ -116,6 +118,7 @@ def drift_study(
     scatter: float = 1e-3,
     seed: int = 0,
     progress: Callable[[str, float], None] | None = None,
+    **unknown: Never,
 ) -> DriftStudy:
     """Run one motion with several methods and judge how the errors of each grow.
 
@@ -129,6 +132,8 @@ def drift_study(
     y0
         Initial state, shape (2n,), or a number for each variable, or for a scene the name of a start; a scene's default
         start if left out.
+    *more
+        Nothing: the duration is given by name, and what stands behind the start is refused.
     methods
         The methods, as values or by name. If left out: Kahan & Li's of order 8 and Verlet's where H = T(p) + V(q),
         else Gauss's of order 8 and 2; RK4; heyoka's Taylor method.
@@ -158,6 +163,8 @@ def drift_study(
         Relative size of the (normal) distances of their starts from it, and the seed they are drawn with.
     progress
         Called with the method's name and the fraction of its run that is done.
+    **unknown
+        Nothing: what :func:`canon.propagate` calls ``t_span`` is refused, with what to write.
 
     Returns
     -------
@@ -168,6 +175,8 @@ def drift_study(
     ------
     StudyError
         Where the request makes no sense, or every method failed.
+    TypeError
+        Where there is no such argument.
 
     Examples
     --------
@@ -177,6 +186,9 @@ def drift_study(
     >>> [row.drift.verdict.value for row in study.rows]
     ['bounded', 'secular']
     """
+    _refuse_other(more, unknown)
+    if span is not None:
+        checked_duration(span, y0, "drift_study")
     subject = subject_of(system, y0, parameters)
     timed = driven(subject.hamiltonian) if subject.depends_on_time else None
     hamiltonian = subject.hamiltonian if timed is None else timed.hamiltonian
@@ -219,6 +231,22 @@ def drift_study(
         )
         rows.extend(drift_rows(run, followed, partial(progress, str(method)) if progress else None))
     return _study(subject, timed, rows, span, known_period)
+
+
+def _refuse_other(more: Sequence[object], unknown: Mapping[str, object]) -> None:
+    """Refuse arguments that are none of drift_study; t_span among them, which others take before the start."""
+    if more or "t_span" in unknown:
+        raise TypeError(
+            "drift_study takes the system and the start in this order, and the duration by name: drift_study(system, "
+            "y0, span=1000), in units of time, or periods=1000"
+        )
+    for name in unknown:
+        near = get_close_matches(
+            name, [each for each in signature(drift_study).parameters if len(each) > 4], n=1
+        )
+        raise TypeError(
+            f"drift_study has no argument {name}=" + (f": did you mean {near[0]}=?" if near else "")
+        )
 
 
 def _study(

@@ -28,7 +28,7 @@ class Growth(enum.Enum):
         return self.value
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Drift:
     """How the error of a conserved quantity grew over a run.
 

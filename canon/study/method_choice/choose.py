@@ -25,7 +25,7 @@ from canon.study.method_choice.resolution import least_error
 from canon.study.method_choice.slow_times import Outlook, with_outlook
 from canon.study.method_choice.step_search import searched
 from canon.study.motion.extended_phase_space import driven
-from canon.study.motion.studied_motion import Subject, subject_of
+from canon.study.motion.studied_motion import Subject, checked_duration, subject_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -233,8 +233,7 @@ def choose(
     >>> choice.reached, choice.predicted_error < 1e-4, choice.predicted_cost < 1.0
     (True, True, True)
     """
-    if not (math.isfinite(span) and span > 0.0):
-        raise StudyError(f"a span of {span} makes no sense: give a positive, finite duration")
+    checked_duration(span, y0, "choose")
     if not 0.0 < accuracy < 0.1:
         raise StudyError(
             f"an accuracy of {accuracy} makes no sense: give a number between 0 and 0.1, such as 1e-8"

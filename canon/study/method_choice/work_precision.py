@@ -20,7 +20,7 @@ from canon.study.errors import StudyError
 from canon.study.method_choice.choice_table import duration_in_words
 from canon.study.method_choice.resonance import resonant_steps
 from canon.study.motion.quiet_run import run_quietly
-from canon.study.motion.studied_motion import Subject, subject_of
+from canon.study.motion.studied_motion import Subject, checked_duration, subject_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -163,7 +163,7 @@ def work_precision(
     Raises
     ------
     StudyError
-        Where steps or tolerances are missing, or the reference fails.
+        Where the span is no duration, steps or tolerances are missing, or the reference fails.
 
     Examples
     --------
@@ -173,6 +173,7 @@ def work_precision(
     >>> round(math.log2(found.rows[0].position_error / found.rows[1].position_error))
     4
     """
+    checked_duration(span, y0, "work_precision")
     if repetitions < 1:
         raise StudyError(f"repetitions = {repetitions}: run each method at least once")
     several = (precision,) if precision is None or isinstance(precision, str) else tuple(precision)

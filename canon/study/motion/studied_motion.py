@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+import reprlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from canon.expression.symbols.input_in_words import described
 from canon.flow.system.parameter_values import SpareParameters
 from canon.flow.system.scene_as_system import is_scene, opened
 from canon.flow.system.start_of_motion import read_by_labels, state_in_order
@@ -22,7 +25,7 @@ if TYPE_CHECKING:
 
     from canon.flow.system.recognised_system import MovableSystem
 
-__all__ = ["Subject", "subject_of", "variables_of"]
+__all__ = ["Subject", "checked_duration", "subject_of", "variables_of"]
 
 
 @dataclass(frozen=True)
@@ -104,6 +107,44 @@ def subject_of(
         state = np.asarray(opened(scene, y0, {}).y0, dtype=np.float64)
         return Subject(scene, moving, state, values, f"{scene.title}; {scene.start(y0).about}")
     return Subject(scene, moving, _state_of(moving, y0), values, scene.title)
+
+
+def checked_duration(span: Any, y0: Any, function: str) -> None:
+    """Refuse as a duration what is no positive, finite number.
+
+    Parameters
+    ----------
+    span, y0
+        The duration and the start as they were given, perhaps in each other's places.
+    function
+        What they were given to.
+
+    Raises
+    ------
+    StudyError
+        The duration is something else; the sentence says what to write.
+
+    Examples
+    --------
+    >>> checked_duration((0, 1000), [1, 0], "choose")
+    Traceback (most recent call last):
+        ...
+    canon.study.errors.StudyError: span = (0, 1000): give a duration, one number, as a study begins at t = 0: choose...
+    """
+    shown = reprlib.repr(span)
+    if isinstance(span, tuple) and len(span) == 2:  # as propagate has it
+        raise StudyError(
+            f"span = {shown}: give a duration, one number, as a study begins at t = 0: {function}(system, span, y0)"
+        )
+    try:
+        fits = math.isfinite(span) and span > 0.0
+    except (TypeError, OverflowError):
+        swapped = f", {function}(system, {y0}, {shown})" if isinstance(y0, int | float) else ""
+        raise StudyError(
+            f"span should be a duration, one number, not {described(span)}: it comes before the state y0{swapped}"
+        ) from None
+    if not fits:
+        raise StudyError(f"a span of {span} makes no sense: give a positive, finite duration")
 
 
 def variables_of(system: Any) -> tuple[tuple[Symbol, ...], Symbol]:
