@@ -18,6 +18,7 @@ from canon.flow.method.method_text import method_of
 from canon.frozen_mapping import FrozenMapping
 from canon.study.cases.case import Case, case_in, part_count
 from canon.study.cases.store import Store, existing_store
+from canon.study.energy_drift.drift_verdict import Growth
 from canon.study.kept.chunk_file import Chunk, ChunkFolder
 from canon.study.kept.kept_arrays import Kept
 from canon.study.kept.kept_dataset import dataset_of_kept
@@ -153,7 +154,7 @@ class Results(Sequence[Result]):
         Raises
         ------
         ValueError
-            Nothing is called so, or no state is.
+            Nothing is called so, or no state or verdict is.
 
         Examples
         --------
@@ -242,6 +243,10 @@ class Results(Sequence[Result]):
         raise ValueError(f"no result has anything called {name!r}{meant}")
 
 
+_WORDS: Mapping[str, type[Enum]] = FrozenMapping({"state": State, "verdict": Growth})
+"""What has one of few values, in words."""
+
+
 def _asked(name: str, given: Any) -> tuple[Any, ...]:
     """Return what is asked for as alternatives."""
     if name == "start":
@@ -250,10 +255,10 @@ def _asked(name: str, given: Any) -> tuple[Any, ...]:
         given = np.ravel(given).tolist()
     alternatives = isinstance(given, list | tuple | set | frozenset | range)
     each: tuple[Any, ...] = tuple(given) if alternatives else (given,)
-    if name == "state":
-        known = [state.value for state in State]
+    if name in _WORDS:
+        known = [word.value for word in _WORDS[name]]
         if unknown := [one for one in each if isinstance(one, str) and one not in known]:
-            raise ValueError(f"no state is called {unknown[0]!r}; there are {', '.join(known)}")
+            raise ValueError(f"no {name} is called {unknown[0]!r}; there are {', '.join(known)}")
     if name == "method":
         return tuple(method_of(one) if isinstance(one, str) else one for one in each)
     if name == "system":
