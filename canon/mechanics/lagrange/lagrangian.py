@@ -79,7 +79,8 @@ class Lagrangian:
     Raises
     ------
     ValueError
-        Where the forces do not match the coordinates, one of these is the time, or L holds accelerations.
+        Where the forces do not match the coordinates, one of these is the symbol of the time (a coordinate that is
+        called so, as ``coordinates("t")`` makes it, is another symbol), or L holds accelerations.
 
     Examples
     --------

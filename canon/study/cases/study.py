@@ -10,11 +10,14 @@ from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from canon.expression.symbols.user_input import counted
 from canon.flow.equations.listed_equations import is_heyoka_system
 from canon.flow.method.engine import needs_hamiltonian
 from canon.flow.method.method_text import method_from, method_of
 from canon.flow.system.recognised_system import recognised
+from canon.flow.system.start_of_motion import state_in_order
 from canon.flow.system_request import is_hamiltonian
 from canon.given_file import bytes_of, tables_of
 from canon.mechanics.traced.rates_function import is_rates_function
@@ -27,9 +30,10 @@ from canon.study.energy_drift.drift import FEWEST
 from canon.study.energy_drift.sample_times import FEWEST_USUAL, usual_samples
 from canon.study.errors import StudyError
 from canon.study.kept.keep_choice import keep_from
-from canon.study.motion.hamiltonian_text import Formula, formula_of
+from canon.study.motion.hamiltonian_text import Formula, formula_of, hamiltonian_of
+from canon.study.motion.studied_motion import variables_of
 from canon.study.motion.system_table import system_from
-from canon.study.motion.system_text import SystemText, system_text
+from canon.study.motion.system_text import SystemText, system_in, system_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -104,8 +108,9 @@ class Study:
             :class:`canon.study.motion.hamiltonian_text.Formula` or
             :class:`canon.study.motion.system_text.SystemText`),
             ``start``, ``method``, ``step`` or ``steps_per_period``, ``tolerance``, ``precision``: one value or a list
-            of values (a state is a list in that list, ``start=[[1.0, 0.0]]``; steps are for methods of fixed step,
-            tolerances for the others); ``parameters``: a value or a list of values each; ``periods`` or ``span``,
+            or an array of values (a state is a list in that list, ``start=[[1.0, 0.0]]``, or by name or symbol,
+            ``start={x: 1.0, x.momentum: 0.0}``; steps are for methods of fixed step, tolerances for the others);
+            ``parameters``: by name or symbol, a value or a list of values each; ``periods`` or ``span``,
             ``samples`` and ``parts`` hold for all cases, and so do the ``observables`` to judge beside the energy:
             ``"momenta"``, ``"integrals"``, a constant by name, ``{name: formula}``, or a list of these; ``keep`` says
             what is kept beside the numbers: ``"motion"``, ``"exponent"``, ``"chaos"``, ``{"section": formula}``, or a
@@ -190,6 +195,7 @@ def _cases(table: Mapping[str, Any], where: str, own: Mapping[str, Formula | Sys
             f"{where}: parameters is a table of names and values, not {reprlib.repr(parameters)}"
         )
     try:
+        parameters = _by_name(parameters)
         axes = [_listed(table.get(name)) for name in AXES]
         listed = {**dict(zip(AXES, axes, strict=True)), **{k: _listed(v) for k, v in parameters.items()}}
         if empty := [name for name, values in listed.items() if not values]:
@@ -327,7 +333,7 @@ def _case(
         method=method,
         span=span,
         samples=_whole("samples", table.get("samples", usual)),
-        start=_start(start),
+        start=_start(start, system),
         parameters=parameters,
         step=_number("step", step) if stepped else None,
         tolerance=None if stepped or tolerance is None else _number("tolerance", tolerance),
@@ -403,7 +409,11 @@ def _text(name: str, value: Any) -> str | None:
     return value
 
 
-def _start(given: Any) -> str | tuple[float, ...] | None:
+def _start(given: Any, system: str | Formula | SystemText) -> str | tuple[float, ...] | None:
+    if isinstance(given, Mapping):
+        given = _in_order(given, system)
+    if isinstance(given, np.ndarray):
+        given = given.tolist()
     if isinstance(given, list | tuple):
         return tuple(_number("a start's number", x) for x in given)
     if isinstance(given, int | float):
@@ -411,7 +421,32 @@ def _start(given: Any) -> str | tuple[float, ...] | None:
     return _text("start", given)
 
 
+def _in_order(start: Mapping[Any, Any], system: str | Formula | SystemText) -> list[Any]:
+    """Return a start that is given by symbol or name, as :func:`canon.propagate` takes it, in the variables' order."""
+    if isinstance(system, str):
+        scene = find(system)
+        variables = variables_of(scene.hamiltonian if scene.is_free else scene)[0]
+    else:
+        variables = variables_of(
+            hamiltonian_of(system) if isinstance(system, Formula) else system_in(system)
+        )[0]
+    try:
+        return list(state_in_order(start, variables))
+    except KeyError as wrong:
+        raise ValueError(f"start: {wrong.args[0]}") from None
+
+
+def _by_name(parameters: Mapping[Any, Any]) -> dict[str, Any]:
+    """Return values of parameters, which may be given by symbol, by name."""
+    named = {str(key): value for key, value in parameters.items()}
+    if len(named) < len(parameters):
+        raise ValueError(f"parameters names one twice: {', '.join(sorted(map(str, parameters)))}")
+    return named
+
+
 def _listed(value: Any) -> list[Any]:
+    if isinstance(value, np.ndarray):
+        return np.atleast_1d(value).tolist()
     return list(value) if isinstance(value, list | tuple) else [value]
 
 

@@ -33,6 +33,9 @@ MOST_NAMES = 500
 LONGEST_NAME = 80
 """Letters of a name."""
 
+_OF_TEX = frozenset("\\{}")
+"""Signs in the names of symbols that SymPy prints in TeX, which the expression language does not have."""
+
 KEYS = ("H", "q", "p", "parameters", "starts", "period")
 """What a table in a file may say of a system."""
 
@@ -200,11 +203,15 @@ def formula_of(
 
     exact: dict[Any, Any] = {x: _exact(x) for x in hamiltonian.H.atoms(sp.Float)}
     H: Any = hamiltonian.H.xreplace(exact)
+    own = {*hamiltonian.q, *hamiltonian.p, hamiltonian.t}
+    given = {str(key) for key in parameters or {}}
+    if missing := sorted(str(s) for s in H.free_symbols if s not in own and str(s) not in given):
+        raise StudyError(f"{name} holds {', '.join(missing)}: give each a value, parameters={{name: value}}")
     if hamiltonian.t in H.free_symbols and str(hamiltonian.t) != "t":
         raise StudyError(f"{name}: in a study the time is called t, not {hamiltonian.t}")
     formula = Formula(
         name=name,
-        H=str(H),
+        H=str(H.xreplace({s: sp.Symbol(_spelled(s.name)) for s in H.free_symbols if {*s.name} & _OF_TEX})),
         q=tuple(map(str, hamiltonian.q)),
         p=tuple(map(str, hamiltonian.p)),
         parameters=tuple((str(key), float(value)) for key, value in (parameters or {}).items()),
@@ -228,14 +235,16 @@ def hamiltonian_of(formula: Formula) -> Hamiltonian:
     StudyError
         With the place in the text and the remedy, where it can't be read.
     """
+    from sympy import Symbol
+
     from canon.expression.parse import LanguageError, parse_expression
-    from canon.expression.symbols.symbol import Coordinate, Momentum, parameters
+    from canon.expression.symbols.symbol import Coordinate, Momentum
     from canon.mechanics.hamilton.hamiltonian import Hamiltonian
 
     try:
         q = [Coordinate(name, real=True) for name in formula.q]
         p = [Momentum(name, real=True) for name in formula.p]
-        constants = [parameters(name) for name, _ in formula.parameters]
+        constants = [Symbol(name, real=True) for name, _ in formula.parameters]
         H = parse_expression(formula.H, scope_of((*q, *p, *constants)))
     except LanguageError as error:
         raise StudyError(f"system {formula.name}, H: {error}") from error
@@ -245,11 +254,24 @@ def hamiltonian_of(formula: Formula) -> Hamiltonian:
 def scope_of(symbols: Sequence[Symbol]) -> Scope:
     """Return the scope in which these are declared, θ by the name theta too: the language spells Greek letters out."""
     from canon.expression.parse import Scope
-    from canon.expression.text.tokens import GREEK
 
     names = {symbol.name: symbol for symbol in symbols}
-    plain = {"".join(GREEK.get(letter, letter) for letter in name): symbol for name, symbol in names.items()}
+    plain = {_spelled(name): symbol for name, symbol in names.items()}
     return Scope(names, other_names={name: symbol for name, symbol in plain.items() if name not in names})
+
+
+def _spelled(name: str) -> str:
+    r"""Return a name as the language reads it: ω₀ and TeX's \omega_0 as omega_0; another name as it is."""
+    from canon.expression.text.tokens import LanguageError, tokens
+
+    try:
+        word, *rest = tokens("".join(sign for sign in name if sign not in _OF_TEX))
+    except LanguageError:
+        return name
+    plain = (
+        word.kind == "name" and len(rest) == 1 and not word.primes and not any(a.rates for a in word.atoms)
+    )
+    return word.text if plain else name
 
 
 def check_declared(
