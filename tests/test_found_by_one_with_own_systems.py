@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pytest
 import sympy as sp
 
@@ -24,6 +26,8 @@ from canon import (
 )
 from canon.mechanics import (
     VectorField,
+    birkhoff_normal_form,
+    centre_manifold,
     generalized_forces,
     generalized_torques,
     is_symmetry,
@@ -33,6 +37,7 @@ from canon.mechanics import (
 from canon.study.cases.mend import mend
 from canon.study.cases.run_study import resume
 from canon.study.cases.store import Store, StoreError
+from canon.study.energy_drift.drift_verdict import Growth
 from canon.study.errors import StudyError
 
 if TYPE_CHECKING:
@@ -221,3 +226,111 @@ def test_the_duration_of_a_drift_study_has_a_name() -> None:
         drift_study(SPRING, [1, 0], method="rk4")
     with pytest.raises(StudyError, match=r"span = \(0, 1000\): give a duration"):
         drift_study(SPRING, [1, 0], span=(0, 1000))
+
+
+K = sp.Symbol("k", positive=True)
+BY_RK4 = {"method": "rk4", "step": 0.1, "span": 30.0, "samples": 256}
+
+
+def springs(k: sp.Symbol) -> tuple[Hamiltonian, Lagrangian]:
+    return (
+        Hamiltonian(X.momentum**2 / 2 + k * X**2 / 2, [X], [X.momentum]),
+        Lagrangian(X.dot**2 / 2 - k * X**2 / 2, [X]),
+    )
+
+
+def test_a_study_takes_what_propagate_takes() -> None:
+    p = X.momentum
+    plain = Study.of(system=springs(K)[0], start=[[0.5, 0.0]], parameters={"k": [1.0, 1.5, 2.0]}, **BY_RK4)
+    for start in ({X: 0.5, p: 0}, [{"p_x": 0, "x": 0.5}], np.array([[0.5, 0.0]]), [np.array([0.5, 0.0])]):
+        for parameters in ({K: [1, 1.5, 2]}, {"k": np.linspace(1, 2, 3)}):
+            assert Study.of(system=springs(K)[0], start=start, parameters=parameters, **BY_RK4) == plain
+    of_scene = Study.of(system="kepler", start={"x": 1, "y": 0, "p_x": 0, "p_y": 0.9}, **BY_RK4)
+    assert of_scene.cases[0].start == (1.0, 0.0, 0.0, 0.9)
+    of_lagrangian = Study.of(system=springs(K)[1], start={X.dot: 2, X: 1}, parameters={K: 1}, **BY_RK4)
+    assert of_lagrangian.cases[0].start == (1.0, 2.0)
+    with pytest.raises(StudyError, match=r"start: y0 has no value for p_x"):
+        Study.of(system=springs(K)[0], start={X: 0.5}, parameters={K: 1}, **BY_RK4)
+    with pytest.raises(StudyError, match="parameters names one twice: k, k"):
+        Study.of(system=springs(K)[0], start=[[1, 0]], parameters={K: 1, "k": 2}, **BY_RK4)
+
+
+@pytest.mark.parametrize("name", [r"\omega_0", "ω₀", "ω_0", r"\omega_{12}", "θ", "λ", "e", "E"])
+def test_symbols_of_a_study_have_any_name(tmp_path: Path, name: str) -> None:
+    k = sp.Symbol(name, positive=True)
+    file = tmp_path / "study.sqlite"
+    for system in springs(k):
+        study = Study.of(system=system, start=[[1, 0]], parameters={k: [2.0, 3.0]}, **BY_RK4)
+        assert study == Study.of(system=system, start=[[1, 0]], parameters={name: [2.0, 3.0]}, **BY_RK4)
+        with pytest.raises(StudyError, match=f"holds {re.escape(name)}: give each a value, parameters="):
+            Study.of(system=system, start=[[1, 0]], **BY_RK4)
+    assert run_study(study, file).finished == 2
+    of_hamiltonian = Study.of(system=springs(k)[0], start=[[1, 0]], parameters={k: 2.0}, **BY_RK4)
+    run_study(of_hamiltonian, file)
+    assert [result.case.values for result in results_of(file).where(system="Hamiltonian")] == [{name: 2.0}]
+
+
+def test_symbols_that_read_alike_are_refused() -> None:
+    first, other = sp.symbols(r"\omega_0 omega_0", positive=True)
+    both = Hamiltonian(X.momentum**2 / 2 + first * X**2 + other * X, [X], [X.momentum])
+    with pytest.raises(StudyError, match="the expression language has no words for"):
+        Study.of(system=both, start=[[1, 0]], parameters={first: 1, other: 2}, **BY_RK4)
+
+
+@pytest.mark.parametrize(
+    ("y0", "told"),
+    [
+        ("hello", "y0 is the text 'hello': give a number for each variable.*only scenes have starts"),
+        ({0.0, 1.0}, "y0 is a set .*a set has no order"),
+        ((x for x in (1.0, 0.0)), r"y0 is a generator .*list\(…\) makes a list of it"),
+        ({"x": 1}.items(), r"y0 is a dict_items .*leave \.items\(\) out"),
+        ({"x": 1}.values(), "y0 is a dict_values .*give the dictionary itself"),
+        (5, "y0 is 5: .*a state of one variable is a list of one number"),
+        (None, "no start y0 is given: give a number for each variable"),
+    ],
+)
+def test_what_is_no_start_is_named(y0: object, told: str) -> None:
+    for system in (SPRING, Lagrangian(X.dot**2 / 2 - X**2 / 2, [X])):
+        with pytest.raises((TypeError, ValueError), match=told):
+            propagate(system, (0, 1), y0)
+
+
+def test_dense_is_left_out_where_it_is_not_needed() -> None:
+    with pytest.raises(ValueError, match=r"dense=True: leave it out.*motion\(4\.123\)"):
+        propagate(SPRING, (0, 10), [1, 0], method="rk4", step=0.1, dense=True)
+    assert propagate(SPRING, (0, 10), [1, 0], method="rk4", step=0.1)(4.123).shape == (2,)
+    with pytest.raises(
+        ValueError, match=r"DOP853.* has no polynomials to keep; Taylor\(\) has, or name the times"
+    ):
+        propagate(SPRING, (0, 10), [1, 0], method="dop853", dense=True)
+
+
+def test_a_stopped_motion_says_how_to_go_on() -> None:
+    stopped = propagate(SPRING, (0, 10), [1, 0], events=[Event(X, action="stop")])
+    told = r"does not go on; start another one there, propagate\(system, \(1\.5708, …\), motion\.final\)"
+    with pytest.raises(ValueError, match=told):
+        stopped.resume(20)
+
+
+def test_more_samples_than_any_memory_holds_are_refused() -> None:
+    with pytest.raises(ValueError, match="samples=100000000000: their times alone take 800 GB of memory"):
+        propagate(SPRING, (0, 10), [1, 0], samples=10**11)
+    by_steps = propagate(SPRING, (0, 10), [1, 0], samples=10**11, method="rk4", step=0.1)
+    assert len(by_steps.t) == 101  # the twin: no more than there are steps
+
+
+def test_the_order_of_a_normal_form_is_named() -> None:
+    for find in (birkhoff_normal_form, centre_manifold):
+        with pytest.raises(ValueError, match=r"the order should be a whole number from 2, not 4\.5"):
+            find(SPRING, 4.5)
+
+
+def test_words_that_no_verdict_has_are_refused(tmp_path: Path) -> None:
+    run_study(a_study(), tmp_path / "study.sqlite")
+    results = results_of(tmp_path / "study.sqlite")
+    with pytest.raises(
+        ValueError, match="no verdict is called 'good'; there are bounded, round-off, wandering"
+    ):
+        results.where(verdict="good")
+    assert len(results.where(verdict=[each.value for each in Growth])) == 1
+    assert len(results.where(verdict=lambda word: word != "good")) == 1

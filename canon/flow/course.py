@@ -11,6 +11,7 @@ import numpy as np
 from canon.array import all_finite
 from canon.expression.graph.number_systems import FLOAT64, LONGDOUBLE
 from canon.flow.kinked.regimes import kinks_of
+from canon.flow.method.engine import FIXED_STEPS
 from canon.flow.run.event import prepared_events
 from canon.flow.run.observables_along import AccuracyWarning, frames_of_canon
 from canon.flow.run.range_check import check_magnitudes, is_narrow
@@ -157,7 +158,14 @@ def _warn_of_kinks(system: HamiltonEquations, method: Method) -> None:
 
 def _check_events(task: Task) -> None:
     if task.dense and not task.method.engine.keeps_polynomials:
-        raise ValueError(f"dense=True: {task.method} has no polynomials to keep; Taylor() has")
+        if task.method.engine is FIXED_STEPS:
+            raise ValueError(
+                f"dense=True: leave it out, for a motion by {task.method} has its states at all times as it is, "
+                "motion(4.123), by shorter steps; polynomials to keep has Taylor() only"
+            )
+        raise ValueError(
+            f"dense=True: {task.method} has no polynomials to keep; Taylor() has, or name the times, times=[…]"
+        )
     if not task.events:
         return
     stops = [event for event in task.events if event.action == "stop"]

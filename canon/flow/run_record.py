@@ -283,7 +283,8 @@ class RunRecord:
         task, found = self.task, self.samples
         if self.stopped:
             raise ValueError(
-                f"the motion was ended by the event {found.crossings[-1].event}: it does not go on"
+                f"the motion was ended by the event {found.crossings[-1].event}: it does not go on; start another one "
+                f"there, propagate(system, ({found.t[-1]:g}, …), motion.final), without the event or beyond it"
             )
         if until is not None:
             if not task.arrived(found):

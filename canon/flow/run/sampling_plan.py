@@ -34,6 +34,9 @@ __all__ = [
 _LATEST, _MOST_STEPS = Fraction(10**300), 2**62
 """Times and steps that can still be told from the next ones."""
 
+_MOST_SAMPLES = 10**9
+"""Samples whose times alone take 8 GB; of two variables the states, their digits beyond doubles and H take 50 GB."""
+
 _SLICES = 20
 """Parts a run of an adaptive method is done in, between which progress is reported and an interruption heard."""
 
@@ -60,9 +63,11 @@ class Sampling:
     def instants(self) -> Array:
         """Return the sample times as they are, for methods that evaluate the motion anywhere.
 
-        Of even ones those that doubles do not tell from the one before are left out.
+        Of even ones those that doubles do not tell from the one before are left out. A ValueError where no memory holds
+        them.
         """
         if self.times is None:
+            _check_memory(self.samples)
             even = np.linspace(float(self.start), float(self.end), self.samples + 1)
             return even[np.append(True, np.diff(even) != 0)]
         return np.array([float(self.start), *self.times, float(self.end)])
@@ -70,6 +75,7 @@ class Sampling:
     def stops(self, steps: int) -> list[int]:
         """Return the numbers of the steps nearest to the sample times, each once, from 0 to the last."""
         if self.times is None:
+            _check_memory(min(self.samples, steps))
             even = np.linspace(0, steps, min(self.samples, steps) + 1)
             return np.unique(even.round().astype(np.int64)).tolist()
         length = self.end - self.start
@@ -138,6 +144,14 @@ def sampling(t_span: tuple[Fraction, Fraction], samples: int | None, times: npt.
     if outside:
         raise ValueError(f"times hold {outside[0]:g}, outside t_span = ({float(start):g}, {float(end):g})")
     return Sampling(start, end, len(inner) + 1, tuple(inner))
+
+
+def _check_memory(samples: int) -> None:
+    if samples > _MOST_SAMPLES:
+        raise ValueError(
+            f"samples={samples}: their times alone take {8e-9 * samples:.3g} GB of memory, and the states more; keep "
+            f"at most {_MOST_SAMPLES:.0e}, or let a method of fixed steps follow functions inside its loop, cadence="
+        )
 
 
 def _check_length(start: Fraction, end: Fraction) -> None:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from numbers import Integral
+from collections.abc import ItemsView, Iterator, Mapping, Set, ValuesView
+from numbers import Integral, Number
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from canon.expression.symbols.input_in_words import described
 from canon.expression.symbols.user_input import counted, listed
 from canon.mechanics.algebra.dynamicsymbols import coordinate
 
@@ -33,8 +34,10 @@ def read_by_labels(y0: Any) -> Any:
 
     Raises
     ------
+    TypeError
+        It is text, one number, or has no order.
     ValueError
-        The labels are other numbers.
+        The labels are other numbers, or there is no start.
 
     Examples
     --------
@@ -44,6 +47,7 @@ def read_by_labels(y0: Any) -> Any:
     >>> read_by_labels(pandas.Series([1.0, 0.0]))
     array([1., 0.])
     """
+    _check_is_state(y0)
     if np.ma.is_masked(y0):
         raise ValueError(f"numbers of the start are masked ({y0}): give them all")
     if getattr(y0, "is_Matrix", False) and y0.shape[1] == 1:
@@ -63,6 +67,26 @@ def read_by_labels(y0: Any) -> Any:
             "order: give it names as labels, or its numbers alone, y0.to_numpy()"
         )
     return table.to_numpy()
+
+
+def _check_is_state(y0: Any) -> None:
+    """Refuse what numpy would take for a single thing, of shape ()."""
+    if isinstance(y0, list | tuple | np.ndarray | Mapping):
+        return
+    wanted = "give a number for each variable in a list, in their order, or by name, {name: number}"
+    if y0 is None:
+        raise ValueError(f"no start y0 is given: {wanted}; only scenes have starts of their own")
+    remedies: tuple[tuple[Any, str], ...] = (
+        (str | bytes, "only scenes have starts that are called by a name"),
+        (ItemsView, "leave .items() out, and give the dictionary itself"),
+        (ValuesView, "give the dictionary itself"),
+        (Set, "a set has no order"),
+        (Iterator, "list(…) makes a list of it"),
+        (Number, "a state of one variable is a list of one number"),
+    )
+    for kind, remedy in remedies:
+        if isinstance(y0, kind):
+            raise TypeError(f"y0 is {described(y0)}: {wanted}; {remedy}")
 
 
 def state_in_order(y0: Any, state: Sequence[Symbol]) -> Any:

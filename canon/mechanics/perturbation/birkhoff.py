@@ -223,7 +223,7 @@ def birkhoff_normal_form(
     -I1**3/256 - I1**2/16 + I1 - 1
     """
     given_kind(H, Hamiltonian, "H", "give Hamiltonian(H, q, p)")
-    if operator.index(order) < 2:
+    if not hasattr(order, "__index__") or operator.index(order) < 2:
         raise ValueError(f"the order should be a whole number from 2, not {order!r}")
     variables = (*H.q, *H.p)
     if H.H.has(H.t):

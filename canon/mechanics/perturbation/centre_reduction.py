@@ -239,9 +239,9 @@ def centre_manifold(
     -0.19820119
     """
     given_kind(H, Hamiltonian, "H", "give Hamiltonian(H, q, p)")
-    if operator.index(order) < 2:
+    if not hasattr(order, "__index__") or operator.index(order) < 2:
         raise ValueError(f"the order should be a whole number from 2, not {order!r}")
-    if not 1 <= operator.index(digits) <= 300:
+    if not hasattr(digits, "__index__") or not 1 <= operator.index(digits) <= 300:
         raise ValueError(f"digits should be from 1 to 300, not {digits!r}")
     if H.H.has(H.t):
         raise ValueError("H depends on the time; take (t, −E) as another pair of variables, or average it")
