@@ -131,13 +131,13 @@ def checked_duration(span: Any, y0: Any, function: str) -> None:
         ...
     canon.study.errors.StudyError: span = (0, 1000): give a duration, one number, as a study begins at t = 0: choose...
     """
-    shown = reprlib.repr(span)
+    shown, number = reprlib.repr(span), span
     if isinstance(span, tuple) and len(span) == 2:  # as propagate has it
         raise StudyError(
             f"span = {shown}: give a duration, one number, as a study begins at t = 0: {function}(system, span, y0)"
         )
     try:
-        fits = math.isfinite(span) and span > 0.0
+        fits = math.isfinite(number) and number > 0.0
     except (TypeError, OverflowError):
         swapped = f", {function}(system, {y0}, {shown})" if isinstance(y0, int | float) else ""
         raise StudyError(
