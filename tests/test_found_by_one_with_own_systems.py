@@ -28,6 +28,7 @@ from canon.mechanics import (
     VectorField,
     birkhoff_normal_form,
     centre_manifold,
+    electric_field,
     generalized_forces,
     generalized_torques,
     is_symmetry,
@@ -81,6 +82,8 @@ def test_coordinates_in_dictionaries_and_sets_are_refused() -> None:
         lambda: routhian(ROTOR, {PH: 0.3}),
         lambda: generalized_torques({X: 1}, {X: 1}, [X]),
         lambda: generalized_forces({X: 1}, [X], [X]),
+        lambda: SPRING.has_equations({X: p}, {p: -X}),
+        lambda: electric_field({X: 1}, 0, [X]),
     ):
         with pytest.raises(TypeError, match="have no order that says which is whose; give a list"):
             ask()

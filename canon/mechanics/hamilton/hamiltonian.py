@@ -137,7 +137,8 @@ class Hamiltonian:
         from canon.proof.kinks import vanishes_off_kinks
 
         domain = as_domain(domain)
-        claimed = plain_all((*q_dot, *p_dot), (*self.q, *self.p), self.t)
+        state = (*self.q, *self.p)
+        claimed = [claim for rates in (q_dot, p_dot) for claim in plain_all(rates, state, self.t)]
         if len(claimed) != 2 * len(self.q):
             raise ValueError(
                 f"{counted(len(claimed), 'rate')} given for {2 * len(self.q)} canonical variables; give one each"

@@ -294,7 +294,7 @@ def charge_term(
 def electric_field(A: Sequence[Expr], phi: Expr, x: Sequence[Symbol], t: Symbol = time) -> tuple[Expr, ...]:
     """Return E = −∇φ − ∂A/∂t in Cartesian coordinates."""
     x = coordinate_symbols(x)
-    potential, *components = plain_all((phi, *all_of(A, len(x), "A", "coordinates")), x, t)
+    potential, components = plain(phi, x, t), plain_all(all_of(A, len(x), "A", "coordinates"), x, t)
     return tuple(-potential.diff(s) - a.diff(t) for s, a in zip(x, components, strict=True))
 
 
