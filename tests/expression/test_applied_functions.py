@@ -122,3 +122,68 @@ def test_words_of_many_factors_are_counted_one_by_one(monkeypatch: pytest.Monkey
     assert read("mgl*mgl*mgl") == (m * g * l) ** 3
     with pytest.raises(LanguageError, match="more than 9 numbers, names and signs; split the claim"):
         read("mgl*mgl*mgl*mgl")
+
+
+t = sp.Symbol("t", real=True)
+k, omega = parameters("k omega", positive=True)
+OSCILLATOR = Scope({s.name: s for s in (x, y, theta, *PARAMETERS, k, omega)})
+
+
+@pytest.mark.parametrize(
+    ("typed", "meant"),
+    [
+        ("a cos √(k/m) t", "a*cos(sqrt(k/m)*t)"),
+        ("a sin sqrt(k/m) t", "a*sin(sqrt(k/m)*t)"),
+        ("a cos √2 t", "a*cos(sqrt(2)*t)"),
+        ("a cos √(2) t", "a*cos(sqrt(2)*t)"),
+        ("a cos √3 √(g/l) t", "a*cos(sqrt(3)*sqrt(g/l)*t)"),
+        ("a cos 2 sqrt(k/m) t", "a*cos(2*sqrt(k/m)*t)"),
+        ("a cos √(k/m)t", "a*cos(sqrt(k/m)*t)"),
+        ("a sin |ω| t", "a*sin(Abs(omega)*t)"),
+        ("a cos √(k/m) t + b sin √(k/m) t", "a*cos(sqrt(k/m)*t) + b*sin(sqrt(k/m)*t)"),
+        ("a cosh ∛k t", "a*cosh(k**(1/3)*t)"),
+        ("a√(k/m) cos √(k/m) t", "a*sqrt(k/m)*cos(sqrt(k/m)*t)"),
+    ],
+)
+def test_a_constant_root_and_the_time_are_one_argument(typed: str, meant: str) -> None:
+    read_here = parse_expression(typed, OSCILLATOR)
+    assert sp.simplify(read_here - parse_expression(meant, OSCILLATOR)) == 0
+    cut = meant.replace("*t)", ")*t")
+    assert sp.simplify(read_here - parse_expression(cut, OSCILLATOR)) != 0
+
+
+@pytest.mark.parametrize(
+    ("typed", "told"),
+    [
+        ("a cos t√(k/m)", r"this root .* write cos\(t\)\*sqrt\(…\) or cos\(sqrt\(…\)\*t\)"),
+        ("a cos t sqrt(k/m)", r"this root .* write cos\(t\)\*sqrt\(…\) or cos\(sqrt\(…\)\*t\)"),
+        ("a cos (k/m)^(1/2) t", r"\(cos\(k/m\)\^\(1/2\)\)\*t or cos\(\(k/m\)\^\(1/2\)\*t\)"),
+        ("a cos (k/m)² t", r"\(cos\(k/m\)²\)\*t or cos\(\(k/m\)²\*t\)"),
+        ("a cos (k/m)^2 t", r"\(cos\(k/m\)\^2\)\*t or cos\(\(k/m\)\^2\*t\)"),
+        ("a cos (2π/k) t", r"cos\(2π/k\)\*t or cos\(\(2π/k\)\*t\)"),
+        ("a sin √(k/m) · t", r"sin\(√\(k/m\)\) times this, or sin of the product\?"),
+        ("a sin ω · t", r"sin\(ω\) times this, or sin of the product\?"),
+        ("a cos √(k/m) (t - 1)", r"still belong to the argument of cos\?"),
+        ("a cos √(k/m) b", r"still belong to the argument of cos\?"),
+        ("a cos k sqrt(g/l)", r"still belong to the argument of cos\?"),
+    ],
+)
+def test_what_may_stand_in_an_argument_or_behind_it_is_asked_about(typed: str, told: str) -> None:
+    with pytest.raises(LanguageError, match=told):
+        parse_expression(typed, OSCILLATOR)
+
+
+@pytest.mark.parametrize(
+    ("typed", "meant"),
+    [
+        ("a cos θ √(g/l)", "a*cos(theta)*sqrt(g/l)"),
+        ("a cos ω t √(k/m)", "a*cos(omega*t)*sqrt(k/m)"),
+        ("a cos(k/m)^(1/2) t", "a*sqrt(cos(k/m))*t"),
+        ("a cos(ω) t", "a*cos(omega)*t"),
+        ("a cos (θ) t", "a*cos(theta)*t"),
+        ("a cos √(k/m)", "a*cos(sqrt(k/m))"),
+        ("a cos √(x² + y²) y", "a*cos(sqrt(x**2 + y**2))*y"),
+    ],
+)
+def test_an_argument_that_is_complete_ends(typed: str, meant: str) -> None:
+    assert parse_expression(typed, OSCILLATOR) == parse_expression(meant, OSCILLATOR)

@@ -1,8 +1,9 @@
-"""Applied functions: ``sin θ``, ``sinθ``, ``sin^2 θ``, ``Sin[x]``, ``e^x``, and the constructors that SymPy prints.
+"""Applied functions: ``sin θ``, ``sinθ``, ``sin^2 θ``, ``Sin[x]``, ``e^x``.
 
 Without brackets a function takes numbers and what follows them: one name, ``sin 2θ``; letters written as one word with
-it, ``sin kx``; a parameter and the time, ``cos ω t``. It ends after the first name that moves. ``sin a x``, ``sin x/2``
-and ``sin x^2`` are refused, with both readings.
+it, ``sin kx``; a parameter or a constant root and the time, ``cos ω t``, ``cos √(k/m) t``. It ends after the first
+name that moves. ``sin a x``, ``cos ω · t``, ``cos t √(k/m)``, ``sin x/2`` and ``sin x^2`` are refused, with both
+readings.
 """
 
 from __future__ import annotations
@@ -11,35 +12,32 @@ import re
 from typing import TYPE_CHECKING
 
 from canon.expression.text.declared_names import function_name
-from canon.expression.text.differentials import PARTIAL, PRIMED
+from canon.expression.text.factor_parser import CLOSING, ROOTS
 from canon.expression.text.open_readings import is_angle_of_functions
 from canon.expression.text.syntax import (
     Call,
-    Comparison,
     Name,
     Negative,
     Node,
     Number,
     Power,
     Product,
-    Sum,
-    Tuple,
     parts,
 )
 from canon.expression.text.vocabulary import WHICH_E
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
     from canon.expression.text.factor_parser import FactorParser
     from canon.expression.text.tokens import Token
 
-__all__ = ["applied", "constructed", "is_function", "with_brackets"]
+__all__ = ["applied", "is_function", "with_brackets"]
 
 _INVERSE = {"sin": "asin", "cos": "acos", "tan": "atan", "cot": "acot", "sinh": "asinh", "cosh": "acosh",
             "tanh": "atanh"}  # fmt: skip
 _BARE = frozenset((*_INVERSE, *_INVERSE.values(), "sec", "csc", "log", "exp", "sqrt", "atan"))
 """Functions that may stand without brackets."""
+_WAVES = frozenset(("sin", "cos", "sinh", "cosh", "tan", "tanh"))
+"""Functions of a frequency times the time."""
 _MAX_CHAIN = 4
 _OF_MATHEMATICA = re.compile(r"\\\[[A-Z]|(?<![A-Za-z])(?:Sin|Cos|Tan|Sinh|Cosh|Exp|Log|Sqrt|ArcTan)\[")
 """What only Mathematica writes, where E is Euler's number."""
@@ -66,6 +64,7 @@ def applied(reader: FactorParser, token: Token, chain: int = 1) -> Node | None:
     following = reader.token
     if following.text in ("(", "["):
         node = _called(reader, token, name, following)
+        _refuse_a_bracket_of_frequency(reader, name, following, node)
     elif name not in _BARE:
         return None if exponent is None else Name(token.text, 0, token.column)
     elif name == "sqrt" and reader.starts(following):
@@ -144,6 +143,37 @@ def _called(reader: FactorParser, token: Token, name: str, opening: Token) -> No
     return Call(name, arguments, token.column)
 
 
+def _refuse_a_bracket_of_frequency(reader: FactorParser, name: str, opening: Token, called: Node) -> None:
+    """Refuse ``cos (2π/T) t`` and ``cos (k/m)^(1/2) t``, whose bracket may be but a factor of the argument."""
+    if opening.tight or name not in _WAVES or _moves(reader, called) or _of_angles(reader, called):
+        return
+    behind = _behind_exponent(reader)
+    if not _is_clock(reader, reader.tokens[behind]):
+        return
+    clock, raised = reader.scope.time.name, behind > reader.at
+    within = reader.text[opening.column - 1 : reader.tokens[behind].column - 1].strip()[:40]
+    shown = f"({name}{within})*{clock}" if raised else f"{name}{within}*{clock}"
+    raise reader.fault(
+        f"does {clock} still belong to the argument of {name}? {shown} or {name}({within}*{clock})",
+        "write the one that is meant",
+        reader.tokens[behind],
+    )
+
+
+def _behind_exponent(reader: FactorParser) -> int:
+    """Return the place of the token behind an exponent that comes next, of this one where none does."""
+    at, tokens = reader.at, reader.tokens
+    if tokens[at].kind == "super":
+        return at + 1
+    if tokens[at].text not in ("^", "**"):
+        return at
+    closing = CLOSING.get(tokens[at + 1].text)
+    if closing is None:
+        return at + 2 if tokens[at + 1].kind == "number" else at
+    ends = [place for place in range(at + 2, len(tokens)) if tokens[place].text == closing]
+    return ends[0] + 1 if ends else at
+
+
 def with_brackets(reader: FactorParser) -> tuple[Node, ...]:
     """Return the arguments in the brackets that come next."""
     opening = reader.token
@@ -164,7 +194,8 @@ def with_brackets(reader: FactorParser) -> tuple[Node, ...]:
 def _bare(reader: FactorParser, name: str, chain: int) -> Node:
     """Return the argument of a function without brackets."""
     first = reader.token
-    if first.kind == "name" and (inner := function_name(first.text, reader.scope)) in _BARE:
+    inner = function_name(first.text, reader.scope) if first.kind == "name" else ""
+    if inner in _BARE and inner != "sqrt":
         return _applied_inside(reader, first, inner, chain)
     taken: list[Node] = []
     numeric = True
@@ -172,12 +203,41 @@ def _bare(reader: FactorParser, name: str, chain: int) -> Node:
         node = reader.atom()
         taken.append(node)
         numeric = numeric and _is_numeric(reader, node)
-        if not isinstance(node, Number | Name):
+        if not isinstance(node, Number | Name) and _moves(reader, node):
             break
-    if numeric and reader.token.text == "*":
-        number = reader.text[first.column - 1 : reader.token.column - 1].strip()
-        raise reader.fault(f"{name}({number}) times this, or {name} of the product?", "write brackets")
+    if reader.token.text == "*":
+        _refuse_a_sign(reader, first, name, taken[-1], numeric=numeric)
     return taken[0] if len(taken) == 1 else Product(tuple((False, node) for node in taken), first.column)
+
+
+def _moves(reader: FactorParser, node: Node) -> bool:
+    """Tell whether anything in a factor moves."""
+    names = (part for part in parts(node) if isinstance(part, Name))
+    return any(name.primes or reader.scope.moves(name.text) for name in names)
+
+
+def _of_angles(reader: FactorParser, node: Node) -> bool:
+    """Tell whether every name in a factor is that of an angle."""
+    names = [part for part in parts(node) if isinstance(part, Name) and not _is_numeric(reader, part)]
+    return bool(names) and all(is_angle_of_functions(name.text) for name in names)
+
+
+def _is_clock(reader: FactorParser, token: Token) -> bool:
+    return token.kind == "name" and token.text == reader.scope.time.name
+
+
+def _refuse_a_sign(reader: FactorParser, first: Token, name: str, last: Node, *, numeric: bool) -> None:
+    """Refuse a sign behind an argument that may go on: ``cos 2 * x``, ``cos ω · t``."""
+    constant = not _moves(reader, last) and not _of_angles(reader, last)
+    if numeric or (constant and _is_clock(reader, reader.tokens[reader.at + 1])):
+        shown = reader.text[first.column - 1 : reader.token.column - 1].strip()[:40]
+        raise reader.fault(f"{name}({shown}) times this, or {name} of the product?", "write brackets")
+
+
+def _is_sqrt(reader: FactorParser) -> bool:
+    """Tell whether a root comes next, by its sign or its name."""
+    token = reader.token
+    return token.text in ROOTS or (token.kind == "name" and function_name(token.text, reader.scope) == "sqrt")
 
 
 def _refuse_a_base(reader: FactorParser, name: str) -> None:
@@ -201,6 +261,8 @@ def _applied_inside(reader: FactorParser, token: Token, name: str, chain: int) -
 
 
 def _is_numeric(reader: FactorParser, node: Node) -> bool:
+    if isinstance(node, Call):  # √2
+        return node.function == "sqrt" and all(_is_numeric(reader, inside) for inside in node.arguments)
     is_pi = isinstance(node, Name) and node.text == "pi" and not reader.scope.declares("pi")
     return is_pi or isinstance(node, Number)
 
@@ -209,20 +271,32 @@ def _still(reader: FactorParser, first: Token, name: str, taken: list[Node]) -> 
     """Tell whether a factor still belongs to an argument without brackets."""
     last, token = taken[-1], reader.token
     if isinstance(last, Name) and (last.primes or reader.scope.moves(last.text)):
+        _refuse_root_of_frequency(reader, name, taken)
         return False
-    if is_function(reader):
+    angle = _of_angles(reader, last)  # v cos α t is v t cos α, or v cos(α t)
+    if is_function(reader) and (angle or not _is_sqrt(reader)):
         return False
-    word = token.tight and token.kind == "name" and not first.tight
-    clock = token.kind == "name" and token.text == reader.scope.time.name
-    angle = isinstance(last, Name) and is_angle_of_functions(
-        last.text
-    )  # v cos α t is v t cos α, or v cos(α t)
+    word = token.tight and token.kind == "name" and not first.tight and isinstance(last, Name)
+    clock = _is_clock(reader, token)
     if word or (clock and not angle):
         return True
+    if angle and not isinstance(last, Name) and not clock:
+        return False
     raise reader.fault(
         f"does this factor still belong to the argument of {name}?",
         f"write {name}(x)*y or {name}(x*y), or this factor first",
     )
+
+
+def _refuse_root_of_frequency(reader: FactorParser, name: str, taken: list[Node]) -> None:
+    """Refuse ``cos t √(k/m)``, which says cos(√(k/m) t), or √(k/m) cos t."""
+    clock = reader.scope.time.name
+    alone = all(_is_numeric(reader, node) for node in taken[:-1])
+    if alone and taken[-1] == Name(clock, 0, taken[-1].column) and _is_sqrt(reader):
+        raise reader.fault(
+            f"does this root still belong to the argument of {name}?",
+            f"write {name}({clock})*sqrt(…) or {name}(sqrt(…)*{clock})",
+        )
 
 
 def _exponential(reader: FactorParser, token: Token) -> Node | None:
@@ -270,157 +344,3 @@ def _raised_e(reader: FactorParser, token: Token, exponent: Node) -> Node:
             token,
         )
     return Call("exp", (exponent,), token.column)
-
-
-def constructed(reader: FactorParser, token: Token) -> Node | None:
-    """Return what a constructor of SymPy or Mathematica makes, as ``Mul(Integer(2), Symbol('x'))``; else None."""
-    opening = reader.token
-    if opening.text not in ("(", "[") or reader.scope.declares(token.text) or token.primes:
-        return None
-    if token.text in ("Symbol", "Function") and opening.text == "(":
-        return _quoted(reader, token)
-    make = _CONSTRUCTORS.get(token.text)
-    if make is None:
-        return None
-    arguments = [node for node in with_brackets(reader) if not _is_assumption(node)]
-    node = make(token.column, arguments)
-    if isinstance(node, Name) and token.text == "Subscript":
-        return _with_subscript(reader, node)
-    if node is None:
-        raise reader.fault(
-            f"{token.text} with {len(arguments)} argument(s)", "write the formula itself", token
-        )
-    return node
-
-
-def _with_subscript(reader: FactorParser, name: Name) -> Name:
-    """Return the declared name that ``Subscript[m, 1]`` is, m_1 or m1, and pass over ``[t]`` behind one that moves."""
-    plain = name.text.replace("_", "")
-    if not reader.scope.declares(name.text) and reader.scope.declares(plain):
-        name = Name(plain, 0, name.column)
-    if [t.text for t in reader.tokens[reader.at : reader.at + 3]] == ["[", reader.scope.time.name, "]"]:
-        reader.at += 3
-    return name
-
-
-def _is_assumption(node: Node) -> bool:
-    """Tell whether this is ``real=True`` or ``evaluate=False``, which changes no formula here."""
-    match node:
-        case Comparison((Name(), Name(text="True" | "False" | "true" | "false")), ("=",)):
-            return True
-        case _:
-            return False
-
-
-def _quoted(reader: FactorParser, token: Token) -> Node | None:
-    """Return the name in ``Symbol('x')``, or of ``Function('theta')(Symbol('t'))``."""
-    string = reader.tokens[reader.at + 1]
-    if string.kind != "string":
-        return None
-    name = string.text[1:-1]
-    found = reader.words.declared(name)
-    name = found[0] if len(found) == 1 else name
-    while reader.token.text != ")":
-        if reader.token.kind == "end":
-            raise reader.fault("'(' is never closed", token=token)
-        reader.at += 1
-    reader.at += 1
-    if token.text == "Symbol" or reader.tokens[reader.at].text != "(":
-        return Name(name, 0, string.column)
-    return Call(name, with_brackets(reader), string.column)
-
-
-def _product(column: int, arguments: list[Node]) -> Node:
-    return Product(tuple((False, node) for node in arguments), column)
-
-
-def _quotient(column: int, arguments: list[Node]) -> Node | None:
-    if len(arguments) != 2:
-        return None
-    return Product(((False, arguments[0]), (True, arguments[1])), column)
-
-
-def _sum(column: int, arguments: list[Node]) -> Node:
-    return Sum(tuple((False, node) for node in arguments), column)
-
-
-def _power(column: int, arguments: list[Node]) -> Node | None:
-    return Power(arguments[0], arguments[1], column) if len(arguments) == 2 else None
-
-
-def _squared(column: int, arguments: list[Node]) -> Node | None:
-    return Power(arguments[0], Number(2, 1, column), column) if len(arguments) == 1 else None
-
-
-def _itself(column: int, arguments: list[Node]) -> Node | None:  # noqa: ARG001
-    return arguments[0] if len(arguments) == 1 else None
-
-
-def _equation(column: int, arguments: list[Node]) -> Node | None:
-    return Comparison((arguments[0], arguments[1]), ("=",), column) if len(arguments) == 2 else None
-
-
-def _tuple(column: int, arguments: list[Node]) -> Node:
-    return Tuple(tuple(arguments), column)
-
-
-def _derivative(column: int, arguments: list[Node]) -> Node | None:
-    return Call("Derivative", tuple(arguments), column) if len(arguments) > 1 else None
-
-
-def _over(kind: str) -> Callable[[int, list[Node]], Node | None]:
-    """Return the constructor of an integral or sum; without a range it has no value."""
-    return lambda column, arguments: Call(kind, tuple(arguments), column) if len(arguments) > 1 else None
-
-
-def _outermost_first(column: int, arguments: list[Node]) -> Node | None:
-    """Return Mathematica's integral, whose first range is the outermost; that of Integral is the innermost."""
-    if len(arguments) < 2:
-        return None
-    operand, *over = arguments
-    return Call("Integral", (operand, *reversed(over)), column)
-
-
-def _slope_at(column: int, arguments: list[Node]) -> Node | None:
-    """Return the derivative at a place that SymPy prints as ``Subs(Derivative(V(_xi_1), _xi_1), _xi_1, x)``."""
-    match arguments:
-        case [Call("Derivative", (Call(f, (Name(v),)), Name(w))), Name(u), place] if v == w == u:
-            order = 1
-        case [
-            Call("Derivative", (Call(f, (Name(v),)), Tuple((Name(w), Number(order, 1))))),
-            Name(u),
-            place,
-        ] if v == w == u:
-            pass
-        case _:
-            return None
-    value, times = Call(f, (place,), column), Number(order, 1, column)
-    return (
-        Call(PARTIAL, (value, place, times), column)
-        if isinstance(place, Name)
-        else Call(PRIMED, (value, times), column)
-    )
-
-
-def _subscripted(column: int, arguments: list[Node]) -> Node | None:
-    """Return the name that Mathematica's ``Subscript[m, 1]`` is."""
-    match arguments:
-        case [Name(text, 0), Number(number, 1)]:
-            return Name(f"{text}_{number}", 0, column)
-        case [Name(text, 0), Name(index, 0)]:
-            return Name(f"{text}_{index}", 0, column)
-        case _:
-            return None
-
-
-_CONSTRUCTORS: Mapping[str, Callable[[int, list[Node]], Node | None]] = {
-    "Mul": _product, "Times": _product, "Add": _sum, "Plus": _sum, "Pow": _power, "Power": _power, "pow": _power,
-    "Rational": _quotient, "Fraction": _quotient, "Integer": _itself, "Float": _itself, "S": _itself,
-    "sympify": _itself, "Hold": _itself, "HoldForm": _itself, "Tuple": _tuple, "D": _derivative,
-    "Equal": _equation, "Equality": _equation, "power": _power, "square": _squared, "rational": _quotient,
-    **dict.fromkeys(("Integral", "integrate"), _over("Integral")),
-    "Integrate": _outermost_first,
-    **dict.fromkeys(("Sum", "sum", "summation"), _over("Sum")),
-    **dict.fromkeys(("Product", "product"), _over("Product")),
-    "Subscript": _subscripted, "Subs": _slope_at,
-}  # fmt: skip

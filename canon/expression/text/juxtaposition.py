@@ -11,7 +11,8 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 from unicodedata import numeric
 
-from canon.expression.text.applied_functions import applied, constructed, is_function, with_brackets
+from canon.expression.programs.constructors import constructed
+from canon.expression.text.applied_functions import applied, is_function, with_brackets
 from canon.expression.text.differentials import PARTIAL, PRIMED, derivative, of_operator
 from canon.expression.text.factor_parser import CLOSING, FactorParser
 from canon.expression.text.open_readings import (
