@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from canon.expression.text.statement import Side, Statement
 
 __all__ = [
+    "NEARLY",
     "components_of",
     "entries_of",
     "equation_between",
@@ -261,7 +262,8 @@ def without_remainder(text: str) -> tuple[str, str]:
     return text[: found.start()] + blank + text[found.end() :], found.group()[1:].strip()
 
 
-_NEARLY = re.compile(r"\\(?:approx|simeq)(?![A-Za-z])|[≈≃≅]")
+NEARLY = re.compile(r"\\(?:approx|simeq)(?![A-Za-z])|[≈≃≅]")
+"""Signs between what is nearly equal."""
 
 
 def with_equality_signs(text: str) -> str:
@@ -272,7 +274,7 @@ def with_equality_signs(text: str) -> str:
     >>> with_equality_signs("x'' ≈ -x")
     "x'' = -x"
     """
-    return _NEARLY.sub(lambda found: "=".ljust(len(found.group())), text)
+    return NEARLY.sub(lambda found: "=".ljust(len(found.group())), text)
 
 
 _AT_REST = re.compile(

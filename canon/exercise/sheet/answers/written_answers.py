@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from canon.exercise.sheet import field_texts
+from canon.exercise.sheet.equations.nearly_equal import expansion_alone, without_nearly_equal
 from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.left_sides import components_asked, entry_asked, is_asked, label_of
 from canon.exercise.sheet.quantities.abbreviations import without_abbreviations
@@ -17,7 +18,7 @@ from canon.exercise.sheet.quantities.rounded_values import without_rounded
 from canon.expression.parse import LanguageError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from canon.exercise.sheet.equations.sides import Sides
     from canon.exercise.sheet.kind import Kind
@@ -53,10 +54,10 @@ class WrittenAnswers:
 
     def answer(self, key: str, value: Any, asked: Quantity) -> Any:
         """Return what stands under a key of the answer, written out."""
-        if _EXPANSIONS & self.kind.shapes.keys() and not self.sides.scope.declares("O"):
-            value = self._without_remainders(key, value)
-        if key == "claim" and (_EXPANSIONS | {"equilibrium"}) & self.kind.shapes.keys():
-            value = self._with_equality_signs(value)
+        if _EXPANSIONS & self.kind.shapes.keys():
+            value = self._expansions(key, value)
+        elif key == "claim" and "equilibrium" in self.kind.shapes:
+            value = self._each(value, lambda text: without_nearly_equal(key, text, self.sides))
         if key == "S" and "bodies" in self.kind.shapes and isinstance(value, str):
             value = field_texts.without_terms_of_rest(value)
         value = self._without_rounded(key, value)
@@ -79,20 +80,23 @@ class WrittenAnswers:
             return pair
         return {**pair, "value": self._put_in(key, pair["value"], ())}
 
-    def _without_remainders(self, key: str, value: Any) -> Any:
-        """Return expansions without ``+ O(x^5)`` and ``+ …``, which is told."""
-        if isinstance(value, list):
-            return [self._without_remainders(key, text) for text in value]
-        text, remainder = field_texts.without_remainder(value) if isinstance(value, str) else (value, "")
-        if remainder:
-            self.sides.passed.append(f"the remainder {remainder} in {key} is passed over")
-        return text
+    def _expansions(self, key: str, value: Any) -> Any:
+        """Return expansions without ``+ O(x^5)`` and ``+ …``, and what they are nearly equal to, which is told."""
 
-    def _with_equality_signs(self, value: Any) -> Any:
-        """Return equations that are right to an order, with ``=`` for ≈."""
+        def expansion(text: str) -> str:
+            declared = self.sides.scope.declares("O")
+            text, remainder = (text, "") if declared else field_texts.without_remainder(text)
+            if remainder:
+                self.sides.passed.append(f"the remainder {remainder} in {key} is passed over")
+            return expansion_alone(key, text, self.sides, remainder=bool(remainder))
+
+        return self._each(value, expansion)
+
+    def _each(self, value: Any, change: Callable[[str], str]) -> Any:
+        """Return texts changed one by one."""
         if isinstance(value, list):
-            return [self._with_equality_signs(text) for text in value]
-        return field_texts.with_equality_signs(value) if isinstance(value, str) else value
+            return [self._each(text, change) for text in value]
+        return change(value) if isinstance(value, str) else value
 
     def _without_rounded(self, key: str, value: Any) -> Any:
         """Return exact values without the rounded ones behind them, ``arccos(2/3) ≈ 48.2°``, which are told."""
