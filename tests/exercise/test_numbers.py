@@ -67,6 +67,7 @@ def test_right_values_hold_and_their_twins_do_not(question, answer, twin):
         ("0,588", "the decimal 0.588, or two values"),
         ("0.588 ± 0.001", "two values, or one with its uncertainty"),
         ("1.2(3)", "two values, or one with its uncertainty"),
+        ("1 ± 0.1", "is 1 ± 0.1 two values, or one with its uncertainty"),
         ("+-2", "±, or a minus"),
         ("± 1 ± 2", "chosen by itself here, or all of them together"),
         ("y = 2", "x is asked for here, and this says y = …"),
@@ -78,6 +79,22 @@ def test_what_can_be_read_in_two_ways_is_refused(answer, told):
     found = judged(value="2", name="x", claim=answer)
     assert found.status == "invalid"
     assert told in found.known
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [
+        "10.0 m/s ± 0.1 m/s",
+        "10 m/s +/- 0.1 m/s",
+        "v = 36 km/h ± 1 km/h",
+        r"$10\,\mathrm{m/s} \pm 1\,\mathrm{m/s}$",
+        "(10.0 ± 0.1) m/s",
+    ],
+)
+def test_an_uncertainty_with_its_unit_is_asked_about(answer):
+    found = judged(**SPEED, claim=answer)
+    assert found.status == "invalid"
+    assert "two values, or one with its uncertainty" in found.known
 
 
 RATIONAL = st.fractions(min_value=-100, max_value=100, max_denominator=50)

@@ -52,7 +52,7 @@ SIGNS = re.compile(r"\\pm(?![A-Za-z])|\\mp(?![A-Za-z])|±|∓|\+/[-−]")
 _ABOUT = re.compile(r"\b(?:about|approximately|approx\.?|roughly|ca\.|circa)(?=\s*[-0-9.])")
 _ARC = re.compile(r"(?i)arc|(?<![a-z])a(?:cos|sin|tan)|(?:cos|sin|tan)(?:⁻¹|\^\{?\(?-1)")
 """Inverse functions, whose values are angles."""
-_UNCERTAIN = re.compile(r"[0-9]*\.[0-9]+\s*(?:±|\\pm|\+/-)\s*[0-9]*\.[0-9]+|[0-9]\.[0-9]+\([0-9]+\)")
+_UNCERTAIN = re.compile(r"[0-9]*\.?[0-9]+\s*(?:±|\\pm|\+/-)\s*[0-9]*\.[0-9]+|[0-9]\.[0-9]+\([0-9]+\)")
 
 
 @dataclass(frozen=True)
@@ -77,10 +77,7 @@ def both_signs(text: str) -> tuple[str, ...]:
     (('1 + sqrt(2)', '1 - sqrt(2)'), ('$-   a$', '$+   a$'), ('2',))
     """
     if found := _UNCERTAIN.search(text):
-        reason = f"is {found.group()} two values, or one with its uncertainty?"
-        raise LanguageError(
-            text, found.start() + 1, reason, "write both values, or leave the uncertainty out"
-        )
+        raise _uncertain(text, found.start(), found.group())
     if found := re.search(r"\+[-−]", text):
         raise LanguageError(text, found.start() + 1, "is this ±, or a minus?", "write ± or -")
     signs = list(SIGNS.finditer(text))
@@ -297,12 +294,26 @@ def _refuse_another(text: str, side: Side, label: Label, name: str) -> None:
 def _of_side(side: Side, scope: Scope, *, measured: bool) -> Iterator[Value]:
     """Yield the values of one side: the entries of a set, both signs, each without its unit."""
     for entry in entries_of(side.text):
+        if measured:
+            _refuse_uncertainty(entry, scope)
         for one in both_signs(entry):
             value = Value(*(calculated(one, scope) or unit_behind(one, scope))) if measured else Value(one)
             if measured and (inside := units(value.text, scope)):
                 reason = f"the unit {inside[0].text} stands inside a calculation"
                 raise LanguageError(one, inside[0].start + 1, reason, "write it once, behind the value")
             yield value
+
+
+def _refuse_uncertainty(text: str, scope: Scope) -> None:
+    """Refuse ``5 m/s ± 0.1 m/s``, whose unit stands before ± as well."""
+    sign = SIGNS.search(text)
+    if sign and unit_behind(text[: sign.start()], scope)[1]:
+        raise _uncertain(text, len(text) - len(text.lstrip(" $")), text.strip(" $"))
+
+
+def _uncertain(text: str, start: int, shown: str) -> LanguageError:
+    reason = f"is {shown} two values, or one with its uncertainty?"
+    return LanguageError(text, start + 1, reason, "write both values, or leave the uncertainty out")
 
 
 def _is_value(side: Side, scope: Scope, *, measured: bool) -> bool:
