@@ -188,3 +188,18 @@ def test_names_that_are_declared_stay_what_they_are():
     assert verdict("constraint-class", **keys, constraints=["d x - y = 0"]).holds
     with pytest.raises(InvalidClaim, match="b is not declared"):
         verdict("constraint-class", q=["x", "y"], constraints=["dx - b*dy = 0"], **{"class": ["holonomic"]})
+
+
+@pytest.mark.parametrize(
+    ("dof", "wrong"),
+    [
+        ("1 degree of freedom", "2 degrees of freedom"),
+        ("one degree of freedom", "two degrees of freedom"),
+        ("f = 1 DOF", "f = 2 DOF"),
+        ("1 Freiheitsgrad", "2 Freiheitsgrade"),
+    ],
+)
+def test_degrees_of_freedom_are_counted_in_words(dof, wrong):
+    keys = {"q": ["x", "y"], "constraints": ["x**2 + y**2 - 1"]}
+    assert said("degrees-of-freedom", **keys, dof=dof) == "holds"
+    assert said("degrees-of-freedom", **keys, dof=wrong) == "fails"

@@ -15,7 +15,7 @@ from canon.exercise.sheet.equations.own_labels import (
     is_rest,
     without_arrow,
     without_own_label,
-    without_words_before,
+    without_words_around,
 )
 from canon.exercise.sheet.equations.program_lists import lists_in, rule_as_equation
 from canon.exercise.sheet.equations.told_signs import without_told_sign
@@ -114,7 +114,7 @@ class OneExpression:
     def _in_plain_words(self, place: str, text: str) -> str:
         """Return the text of one answer with numbers for words that count, without a sign that is told behind it."""
         if place in ("dof", "factor") or place.endswith(".value"):
-            return counted_in_words(without_words_before(place, text, self.sides.scope), self.sides.scope)
+            return counted_in_words(without_words_around(place, text, self.sides.scope), self.sides.scope)
         if (variable := self._variable_mapped(place)) is not None:
             return without_arrow(text, variable)
         if place != "energy_rate":

@@ -14,7 +14,7 @@ from canon.exercise.sheet.equations.own_labels import without_label_of_table
 from canon.exercise.sheet.field_texts import entries_of
 from canon.exercise.sheet.left_sides import Label, label_of
 from canon.exercise.sheet.quantities.calculations import calculated
-from canon.exercise.sheet.quantities.measures import DEGREES, measure_of, unit_behind
+from canon.exercise.sheet.quantities.measures import DEGREES, measure_of, unit_behind, with_strokes
 from canon.expression.parse import parse_expression, statements_of
 from canon.expression.text.declared_names import key_of
 from canon.expression.text.markup import unmarked
@@ -295,6 +295,7 @@ def _of_side(side: Side, scope: Scope, *, measured: bool) -> Iterator[Value]:
     """Yield the values of one side: the entries of a set, both signs, each without its unit."""
     for entry in entries_of(side.text):
         if measured:
+            entry = with_strokes(entry, scope)
             _refuse_uncertainty(entry, scope)
         for one in both_signs(entry):
             value = Value(*(calculated(one, scope) or unit_behind(one, scope))) if measured else Value(one)

@@ -28,7 +28,7 @@ __all__ = [
     "without_differential",
     "without_label_of_table",
     "without_own_label",
-    "without_words_before",
+    "without_words_around",
 ]
 
 _NUMBERS: Mapping[str, str] = {
@@ -51,6 +51,11 @@ _FACTOR_IS = re.compile(
 )
 _ARROW = re.compile(
     r"\s*\$?\s*(?P<name>\\?[^\W\d_]\w{0,15}(?:_\{\w{1,5}\})?)\s*(?:↦|⟼|\|->|\\(?:long)?mapsto(?![A-Za-z]))"
+)
+_OF_FREEDOM = re.compile(
+    r"(?<=[\w$}])\s+(?:independent\s)?(?:degrees?\sof\sfreedom|d\.?o\.?f\.?s?|Freiheitsgrade?|degrés?\sde\sliberté"
+    r"|grados?\sde\slibertad|grad[oi]\sdi\slibertà)(?=[\s.]*$)",
+    re.IGNORECASE,
 )
 _DIFFERENTIAL = re.compile(
     r"\s*\$?\s*(?:\\(?:mathrm|text|operatorname)\s?\{\s?d\s?\}|\\mathrm\s?d|d)\s*f\s*=(?!=)"
@@ -132,17 +137,21 @@ def counted_in_words(text: str, scope: Scope) -> str:
     return f"{'-' if minus else ''}{_NUMBERS[bare]}"
 
 
-def without_words_before(place: str, text: str, scope: Scope) -> str:
-    """Return a factor without the words that say that it is one, ``the factor is 6``.
+def without_words_around(place: str, text: str, scope: Scope) -> str:
+    """Return a factor or a number without the words that say what it is, ``the factor is 6``, ``1 degree of freedom``.
 
     Examples
     --------
     >>> from canon.expression.text.scope import Scope
-    >>> without_words_before("factor", "the factor is 6", Scope()).strip()
+    >>> without_words_around("factor", "the factor is 6", Scope()).strip()
     '6'
-    >>> without_words_before("factor", "the factor is not 6", Scope())
+    >>> without_words_around("factor", "the factor is not 6", Scope())
     'the factor is not 6'
+    >>> without_words_around("dof", "two degrees of freedom", Scope()).strip()
+    'two'
     """
+    if place == "dof" and (behind := _OF_FREEDOM.search(text)):
+        return text[: behind.start()] + " " * (behind.end() - behind.start()) + text[behind.end() :]
     found = _FACTOR_IS.match(text) if place == "factor" else None
     if found is None or any(scope.declares(word) for word in found.group().split()):
         return text

@@ -18,7 +18,16 @@ if TYPE_CHECKING:
 
     from canon.expression.text.scope import Scope
 
-__all__ = ["BASE_UNITS", "DEGREES", "UNIT", "Measure", "measure_like", "measure_of", "unit_behind"]
+__all__ = [
+    "BASE_UNITS",
+    "DEGREES",
+    "UNIT",
+    "Measure",
+    "measure_like",
+    "measure_of",
+    "unit_behind",
+    "with_strokes",
+]
 
 _PREFIXES = {"": 0, "T": 12, "G": 9, "M": 6, "k": 3, "h": 2, "d": -1, "c": -2, "m": -3, "µ": -6, "μ": -6, "u": -6,
              "n": -9, "p": -12}  # fmt: skip
@@ -47,7 +56,8 @@ _WORDS: Mapping[str, str] = {
     "hr": "h", "day": "d", "kelvin": "K", "ampere": "A", "volt": "V", "coulomb": "C", "tesla": "T", "ohm": "Ω",
     "revolution": "rev", "turn": "rev", "percent": "%", "sekunde": "s",
     "sekunden": "s", "seconde": "s", "segundo": "s", "secondo": "s", "secondi": "s", "metro": "m", "metri": "m",
-    "kilometer": "km", "kilometre": "km",
+    "kilometer": "km", "kilometre": "km", "centimeter": "cm", "centimetre": "cm", "millimeter": "mm",
+    "millimetre": "mm", "millisecond": "ms", "kilojoule": "kJ", "kilowatt": "kW",
 }  # fmt: skip
 """Units by their names, in singular."""
 _COUNTED_IN = {"angles": ("rad", "deg", "°"), "turns": ("rev", "rpm")}
@@ -89,6 +99,13 @@ _UPRIGHT = re.compile(
     r"(?P<unit>(?:\\(?:mathrm|text|textrm|si|unit)\s?\{[^{}]{0,40}(?:\{[^{}]{0,5}\}[^{}]{0,20}){0,4}\}"
     r"(?:\^\{?-?[0-9]\}?)?(?:\s|\\[,;:! ]|\\cdot|/)*){1,4}|\^\{?\\circ\}?|\\%|\\degree)\s*\$?\s*$"
 )
+_PART = r"[^{}]{0,40}(?:\{[^{}]{0,20}\}[^{}]{0,20}){0,4}"
+_QUOTIENT = re.compile(
+    r"(?<=[0-9.)}\s,;:!~])(?P<unit>(?:\\(?:mathrm|text|unit)\s?\{\s*)?"
+    rf"\\[dt]?frac\s*\{{(?P<above>{_PART})\}}\s*\{{(?P<below>{_PART})\}}\s*\}}?)\s*\$?\s*$"
+)
+"""A unit written as a fraction, ``5\\,\\frac{\\mathrm{m}}{\\mathrm{s}}``."""
+_PER = re.compile(r"(?<=[A-Za-z²³])\s{1,3}(?:per|pro|par|al)\s{1,3}(?=[A-Za-z])")
 
 
 @dataclass(frozen=True)
@@ -248,6 +265,37 @@ def _closed(begins: str, text: str) -> str:
     return begins + " " * (len(text) - len(begins) - len(closing)) + closing
 
 
+def with_strokes(text: str, scope: Scope) -> str:
+    """Return a text with a stroke for ``per`` between units, blanks behind it, and one for ``~`` before a unit.
+
+    Examples
+    --------
+    >>> from canon.expression.text.scope import Scope
+    >>> with_strokes("5 meters per second", Scope()), with_strokes("5~m/s", Scope())
+    ('5 meters/second    ', '5 m/s')
+    """
+    if "\\" not in text and "$" not in text:
+        text = re.sub(r"(?<=[0-9])~(?=[A-Za-z])", " ", text)
+    if any(scope.declares(word) for word in ("per", "pro", "par", "al")):
+        return text
+    return _PER.sub("/", text).ljust(len(text))
+
+
+def _quotient_behind(text: str, scope: Scope) -> tuple[str, str] | None:
+    """Return a text without the fraction of units at its end, and that unit; None where there is none."""
+    found = _QUOTIENT.search(text) if len(text) <= _LONGEST else None
+    if found is None or not text[: found.start()].strip(" $"):
+        return None
+    unit = f"{found['above']}/({found['below']})"
+    letters = re.findall(r"[A-Za-zΩµμ]+", _without_latex(unit))
+    upright = r"\mathrm" in found["unit"] or r"\text" in found["unit"] or r"\unit" in found["unit"]
+    declared = any(x in scope.functions or scope.declares(x) for x in letters)
+    if not letters or (declared and not upright) or measure_of(unit) is None:
+        return None
+    blanked = _closed(text[: found.start()], text)
+    return re.sub(r"(?:\\[,;:! ]|~)(?=\s*\$?\s*$)", "  ", blanked)[: len(text)], unit
+
+
 def unit_behind(text: str, scope: Scope) -> tuple[str, str]:
     r"""Return a text with blanks in place of the unit at its end, and that unit; letters that are declared are none.
 
@@ -260,6 +308,8 @@ def unit_behind(text: str, scope: Scope) -> tuple[str, str]:
     if packed := _SIUNITX.search(text):
         inside = text[: packed.start()] + " " * (packed.start("number") - packed.start()) + packed["number"]
         return _closed(inside, text), _of_macros(packed["unit"])
+    if quotient := _quotient_behind(text, scope):
+        return quotient
     latex = (_SPACED,) if text.lstrip().startswith("$") else ()
     for pattern in (_IN_BRACKET, _UPRIGHT, *latex, _BEHIND) if len(text) <= _LONGEST else ():
         found = pattern.search(text)
