@@ -62,7 +62,7 @@ NAME_BEFORE_SIGN = (
 """A name before ``=``, its square, or a few times it: ``2γ = c/m``."""
 _LONGEST_DEFINITION = 150
 _IN_BRACKETS = re.compile(
-    rf"\s\({NAME_BEFORE_SIGN}=[^=]{{1,90}}(?:[,;]{NAME_BEFORE_SIGN}=[^=]{{1,90}}){{0,4}}\)[\s.]*$"
+    rf"\s\({NAME_BEFORE_SIGN}=[^=]{{1,90}}(?:[,;](?:\\[,;: ]|\\quad)?{NAME_BEFORE_SIGN}=[^=]{{1,90}}){{0,4}}\)[\s.]*$"
 )
 
 
@@ -140,7 +140,8 @@ def opened(text: str) -> str:
     begin, end = found.start() + 1, text.rindex(")")
     if _depths(text[begin + 1 : end]) is None:
         return text
-    return f"{text[:begin]},{text[begin + 1 : end]} {text[end + 1 :]}"
+    comma = " " if re.search(r"\\q?quad\s*$", text[:begin]) else ","  # a wide gap parts statements as well
+    return f"{text[:begin]}{comma}{text[begin + 1 : end]} {text[end + 1 :]}"
 
 
 def _depths(text: str) -> list[int] | None:

@@ -10,10 +10,14 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from canon.exercise.sheet import field_texts
-from canon.exercise.sheet.equations.nearly_equal import expansion_alone, without_nearly_equal
+from canon.exercise.sheet.equations.nearly_equal import (
+    expansion_alone,
+    without_deltas,
+    without_nearly_equal,
+)
 from canon.exercise.sheet.kind import Shape
 from canon.exercise.sheet.left_sides import components_asked, entry_asked, is_asked, label_of
-from canon.exercise.sheet.quantities.abbreviations import without_abbreviations
+from canon.exercise.sheet.quantities.abbreviations import doubtful_definition, without_abbreviations
 from canon.exercise.sheet.quantities.rounded_values import without_rounded
 from canon.expression.parse import LanguageError
 
@@ -57,7 +61,7 @@ class WrittenAnswers:
         if _EXPANSIONS & self.kind.shapes.keys():
             value = self._expansions(key, value)
         elif key == "claim" and "equilibrium" in self.kind.shapes:
-            value = self._each(value, lambda text: without_nearly_equal(key, text, self.sides))
+            value = self._each(value, self._linear)
         if key == "S" and "bodies" in self.kind.shapes and isinstance(value, str):
             value = field_texts.without_terms_of_rest(value)
         value = self._without_rounded(key, value)
@@ -91,6 +95,10 @@ class WrittenAnswers:
             return expansion_alone(key, text, self.sides, remainder=bool(remainder))
 
         return self._each(value, expansion)
+
+    def _linear(self, text: str) -> str:
+        """Return linear equations without the steps to them, and without δ."""
+        return without_deltas(without_nearly_equal("claim", text, self.sides), self.sides)
 
     def _each(self, value: Any, change: Callable[[str], str]) -> Any:
         """Return texts changed one by one."""
@@ -130,8 +138,11 @@ class WrittenAnswers:
         try:
             scope = replace(self.sides.scope, quadratures=key in self.kind.quadratures)
             found = without_abbreviations(texts, scope, is_asked_for)
+            doubt = doubtful_definition(texts, scope, is_asked_for) if found is None else None
         except LanguageError:  # it is told where the answer is read
             return value
+        if doubt is not None:
+            raise self.sides.fault(key, doubt)
         if found is None or (found.unused and "multipliers" in self.sides.keys):  # T = 17 m1 may be one
             return value
         if len(found.texts) > 1 and not isinstance(value, list) and not self.is_list_of_equations:

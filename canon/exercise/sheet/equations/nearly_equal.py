@@ -15,6 +15,8 @@ from sympy import Poly
 from canon.exercise.sheet.field_texts import NEARLY, with_equality_signs
 from canon.expression.parse import LanguageError, parse_expression
 from canon.expression.symbols.symbol import Rate
+from canon.expression.text.open_readings import stem_of
+from canon.expression.text.tokens import GREEK
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -24,9 +26,11 @@ if TYPE_CHECKING:
     from canon.exercise.sheet.equations.sides import Sides
     from canon.expression.text.statement import Side, Statement
 
-__all__ = ["expansion_alone", "without_nearly_equal"]
+__all__ = ["expansion_alone", "without_deltas", "without_nearly_equal"]
 
 _Span = tuple[int, int]
+_DELTA = r"(?:\\delta(?![A-Za-z])|δ)\s?"
+_ACCENTS = r"(?:\\d{0,2}dot(?![A-Za-z])\s?|\{\s?)*"
 _IN_BRACKETS = re.compile(
     r"(?:[\s,]|\\[,;:! ]|\\q?quad(?![A-Za-z])|\\left(?=\())*"
     rf"\((?:[^()]|\([^()]*\))*(?:{NEARLY.pattern})(?:[^()]|\([^()]*\))*\)(?=(?:[\s.$]|\\[\])])*$)"
@@ -119,6 +123,38 @@ def without_nearly_equal(place: str, text: str, known: Sides) -> str:
     if plain == text:
         return plain
     return _without(place, plain, list(_steps(text, known.statements(place, plain), known)), known)
+
+
+def without_deltas(text: str, known: Sides) -> str:
+    r"""Return linear equations without the δ before each coordinate, which is read as the deviation there anyway.
+
+    Examples
+    --------
+    >>> from canon import coordinates
+    >>> from canon.exercise.sheet.equations.sides import Sides
+    >>> from canon.expression.parse import Scope
+    >>> known = Sides({"q": ["theta"]}, Scope({"theta": coordinates("theta")}), lambda place, error: error, [])
+    >>> without_deltas("δθ'' = -δθ", known), without_deltas("δθ'' = -θ", known)
+    (" θ'' = - θ", "δθ'' = -θ")
+    """
+    listed = known.keys.get("q", [])
+    names = [name for name in (listed if isinstance(listed, list) else [listed]) if isinstance(name, str)]
+    if len(text) > _LONGEST or re.search(_DELTA, text) is None or known.scope.declares("delta") or not names:
+        return text
+    spelled = "|".join(dict.fromkeys(_spelling(stem_of(name)) for name in names))
+    before = re.compile(rf"{_DELTA}(?={_ACCENTS}(?:{spelled}))")
+    if len(before.findall(text)) < max(len(re.findall(spelled, text)), len(re.findall(_DELTA, text))):
+        return text
+    known.passed.append("δ before coordinates is passed over: they are read as deviations")
+    return before.sub(lambda found: " " * len(found.group()), text)
+
+
+def _spelling(name: str) -> str:
+    r"""Return a pattern of a name as it is typed, ``θ`` and ``\theta`` for theta."""
+    letters = "".join(letter for letter, spelled in GREEK.items() if spelled == name)
+    return (
+        rf"\\{name}(?![A-Za-z])|[{letters}]" if letters else rf"(?<![A-Za-z\\]){re.escape(name)}(?![A-Za-z])"
+    )
 
 
 def _steps(text: str, statements: Sequence[Statement], known: Sides) -> Iterator[_Span]:

@@ -26,7 +26,7 @@ from canon.expression.text.scope import split
 from canon.expression.text.syntax import Call, Name, parts
 from canon.expression.text.tokens import GREEK
 from canon.expression.text.units import units
-from canon.expression.text.vocabulary import CONSTANTS, OTHER_NAMES
+from canon.expression.text.vocabulary import CONSTANTS, FUNCTIONS, OTHER_NAMES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -38,12 +38,16 @@ if TYPE_CHECKING:
     from canon.expression.text.statement import Side, Statement
     from canon.expression.text.syntax import Node
 
-__all__ = ["Abbreviated", "without_abbreviations"]
+__all__ = ["Abbreviated", "doubtful_definition", "without_abbreviations"]
 
 _SQUARED = re.compile(r"(?:\^2|\*\*2|²|\^\{2\})$")
 _TIMES = re.compile(r"(?P<times>[2-9])\*?(?P<name>[^\W\d]\w*)")
 """A few times a name, ``2γ``."""
 _WHERE = re.compile(r"^(\s*)(?:where|with|and|mit|wobei|avec|où|donde)\b", re.IGNORECASE)
+_OF_VARIABLES = re.compile(
+    r"(?<![\w\\])(?P<name>\\?[^\W\d_]\w{0,9}(?:_\{\w{1,9}\})?)\s?\((?P<inside>[^()=]{1,20})\)\s*=(?!=)"
+)
+"""``V(x) =``, of a function that an answer defines."""
 _MOST = 8
 """Most abbreviations in one answer."""
 _LONGEST = 2_000
@@ -81,6 +85,7 @@ def without_abbreviations(
     """
     if sum(map(len, texts)) > _LONGEST:
         return None
+    texts = [_without_arguments(text, scope, is_asked) for text in texts]
     statements = [s for text in texts for s in statements_of(text, scope)]
     defined, kept = _apart(statements, scope, is_asked) if len(statements) > 1 else ([], [])
     if not kept or not 0 < len(defined) <= _MOST:
@@ -94,6 +99,75 @@ def without_abbreviations(
     made = [_with(statement, known) for statement in kept]
     told = [" = ".join(side.text.strip().lstrip("$ ") for side in each.said.sides) for each in unused]
     return None if None in made else Abbreviated([text for text in made if text is not None], told)
+
+
+def _without_arguments(text: str, scope: Scope, is_asked: Callable[[Label], bool]) -> str:
+    """Return a text with V for ``V(x)`` where it says what V(x) is."""
+    for found in list(_OF_VARIABLES.finditer(text)) if len(text) <= _LONGEST else []:
+        name, inside = found["name"], found["inside"]
+        label = label_of(_spelled(name) or name)
+        said = text[found.start() : found.end("inside") + 1]
+        declared = all(_is_declared(each, scope) for each in re.split(r"[,;]", inside))
+        if (
+            label is None
+            or label.name in FUNCTIONS
+            or label.name in scope.functions
+            or label.name in OTHER_NAMES
+        ):
+            continue
+        if declared and text.count(said) > 1 and _new_name(label.name, scope, is_asked):
+            text = text.replace(said, name.ljust(len(said)))
+    return text
+
+
+def _is_declared(name: str, scope: Scope) -> bool:
+    return scope.declares(_spelled(name.strip()) or name.strip())
+
+
+def doubtful_definition(
+    texts: Sequence[str], scope: Scope, is_asked: Callable[[Label], bool]
+) -> LanguageError | None:
+    """Return what is wrong with the value of a name that the rest of an answer uses; None where nothing is.
+
+    Parameters
+    ----------
+    texts, scope, is_asked
+        As above.
+
+    Examples
+    --------
+    >>> from canon import coordinates, parameters
+    >>> from canon.expression import Scope
+    >>> scope = Scope({s.name: s for s in (coordinates("x"), *parameters("m c"))})
+    >>> doubtful_definition(["x'' + b x' = 0, where b = c/2m"], scope, lambda _: False).reason
+    'c/2m is c/2*m or c/(2*m)?'
+    """
+    for text in texts:
+        statements = statements_of(text, scope)
+        for statement in statements if len(statements) > 1 else ():
+            doubt = _doubt(statement, statements, scope, is_asked)
+            if doubt is not None:
+                return doubt.at_home_in(text)
+    return None
+
+
+def _doubt(
+    statement: Statement, statements: Sequence[Statement], scope: Scope, is_asked: Callable[[Label], bool]
+) -> LanguageError | None:
+    """Return why the value that a statement gives to a name in the others can't be read, None where it can."""
+    if len(statement.sides) != 2:
+        return None
+    left, right = statement.sides
+    name = _new_name(_SQUARED.sub("", _said(left)), scope, is_asked)
+    if not name:
+        return None
+    defined = _Definition(name, statement, sp.S.One, moves=False)
+    try:
+        syntax_of(right.text, scope)
+    except LanguageError as error:
+        others = [each for each in statements if each is not statement]
+        return error if _is_used(defined, others, _with_names(scope, [defined])) else None
+    return None
 
 
 def _apart(
