@@ -64,7 +64,7 @@ _LETTERS = {
 """Letters that components are called by."""
 _DECORATION = re.compile("[\u0302-\u0304]|\\^?\\*$")
 """What tells a new quantity from an old one: ``H̄``, ``H̃``, ``H*``."""
-_OF_POISSON = re.compile(r"(?<=[}\]])_\{?PB\}?$")
+_OF_POISSON = re.compile(r"(?<=[}\]])_\{?P\.?B\.?\}?$")
 """What says that a bracket is Poisson's."""
 _IN_PROGRAMS = re.compile(r"d(?P<of>[A-Za-z]\w*)_dt")
 """A rate as programs call it."""
@@ -257,6 +257,7 @@ def is_asked(label: Label | None, asked: Quantity, scope: Scope) -> bool:
     if not label.name:
         return asked.bracket is not None and _same_bracket(label, asked.bracket, scope)
     known = {key_of(name) for name in scope.spelled}
+    known |= {"q", "p"} if asked.shown == "H" else set()  # H(q, p), whatever they are called here
     return all(key_of(argument) in known for argument in label.arguments) and asked.named_by(label)
 
 

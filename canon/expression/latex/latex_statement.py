@@ -270,6 +270,7 @@ _SPELLINGS = tuple(
             r"\1",
         ),
         (r"\{\s*\\(?:cal|rm|bf)\s*(\w+)\s*\}", r"\1"),
+        (r"_\s*\{\s*(?:\\(?:rm|mathrm|text)\s*\{?\s*)?P\s?\.?\s?B\s?\.?\s*\}{1,2}", "_PB"),
         (r"\\(?:mathrm|text)\s*\{\s*const\.?\s*\}", "const"),
         (r"\\(?:mathrm|mathcal|mathscr|mathbf)\s*(\w)", r"\1"),
         (r"\\(?:hat|vec|bar|tilde|widehat|widetilde|overline)\s*(?:\{\s*(\w+)\s*\}|(\w))", r"\1\2"),

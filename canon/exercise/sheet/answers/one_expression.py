@@ -210,6 +210,9 @@ class OneExpression:
 
     def _written_out(self, place: str, side: Side) -> str:
         """Return the text of an answer, with H put in where J, ω or an adiabatic invariant is said by it."""
+        if place == "energy_rate" and not self.sides.can_read(side):  # -2F
+            said = self.sides.given(place).put_in(side.text)
+            return side.text if said is None else str(said)
         if place.endswith(".value") and not self.sides.can_read(side):  # -L_z beside {L_x, L_y}
             said = self.sides.given(place).put_in(side.text)
             return side.text if said is None else str(said)

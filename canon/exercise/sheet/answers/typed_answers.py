@@ -36,6 +36,7 @@ from canon.exercise.sheet.left_sides import (
     components_asked,
     entry_asked,
 )
+from canon.exercise.sheet.quantities.given_functions import with_partial_signs
 from canon.expression.parse import LanguageError
 
 if TYPE_CHECKING:
@@ -130,6 +131,7 @@ class _Plain:
         if key in _UNTOUCHED:
             return value
         if key in self.kind.answer:
+            value = self.with_partial_signs(key, value)
             value = value if key in self.kind.several else self.listed(key, value)
             written = WrittenAnswers(self.kind, self.sides, is_list_of_equations=self.has_equations(key))
             value = written.answer(key, value, self.quantity(key))
@@ -158,6 +160,11 @@ class _Plain:
                 return [self.bracket(f"{key}[{i}]", pair) for i, pair in enumerate(_tables(value))]
             case _:
                 return value
+
+    def with_partial_signs(self, key: str, value: Any) -> Any:
+        """Return what stands under a key with ``∂H/∂p`` for ``dH/dp``, where it is nothing else."""
+        texts = {text: with_partial_signs(key, text, self.of.keys) for _, text in field_texts.texts_in(value)}
+        return field_texts.with_texts(value, {text: made for text, made in texts.items() if made != text})
 
     def listed(self, key: str, value: Any) -> Any:
         """Return what stands under a key with the lists of programs as people write them."""

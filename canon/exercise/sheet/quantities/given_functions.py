@@ -16,10 +16,12 @@ from canon.exercise.sheet.left_sides import is_definition
 from canon.exercise.sheet.quantities.known_vectors import (
     with_angular_momenta,
     with_place_of_body,
+    with_speeds,
     without_cross_products,
 )
 from canon.expression.parse import LanguageError, parse_expression
 from canon.expression.symbols.symbol import time_derivative, velocity
+from canon.expression.text.declared_names import key_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -29,7 +31,7 @@ if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
     from canon.expression.text.statement import Side, Statement
 
-__all__ = ["GivenFunctions", "key_at"]
+__all__ = ["GivenFunctions", "key_at", "with_partial_signs"]
 
 _LONGEST = 200
 """Characters of a side that is looked at."""
@@ -63,6 +65,36 @@ def key_at(place: str) -> str:
     ('p_dot', 'map')
     """
     return re.split(r"[.\[]", place)[0]
+
+
+_D = r"(?:d|\\(?:mathrm|text)\s?\{\s?d\s?\}|\\rm\s?d)"
+_STRAIGHT = re.compile(
+    rf"(?<![\w∂]){_D}\s?(?P<of>[HWS]|\\mathcal\s?\{{\s?[HWS]\s?\}})(?P<over>\s?/\s?|\s?\}}\s?\{{\s?){_D}\s?"
+    r"(?P<by>\\?[^\W\d_]\w{0,15}(?:_\{\w{1,5}\})?)"
+)
+_OF_KEYS = {"q_dot": "H", "p_dot": "H", "gradient": "WS"}
+"""Functions whose derivatives by a variable are partial ones under some keys, however they are written."""
+
+
+def with_partial_signs(key: str, text: str, keys: Mapping[str, Any]) -> str:
+    """Return a text with ``∂H/∂p`` for ``dH/dp``, which in Hamilton's equations is nothing else.
+
+    Examples
+    --------
+    >>> with_partial_signs("p_dot", "-dH/dx = -k x", {"q": ["x"]}), with_partial_signs("p_dot", "dH/dt", {"q": ["x"]})
+    ('-∂H/∂x = -k x', 'dH/dt')
+    """
+    listed = [keys.get(name, []) for name in ("q", "p")]
+    names = {key_of(name) for each in listed for name in (each if isinstance(each, list) else [each])}
+
+    def partial(found: re.Match[str]) -> str:
+        by = found["by"].lstrip("\\").replace("{", "").replace("}", "")
+        if key_of(by) not in names or not set(found["of"]) & set(_OF_KEYS.get(key, "")):
+            return found.group()
+        by = found["by"] if found["over"].strip() == "/" else f" {found['by']}"
+        return f"∂{found['of']}{found['over']}∂{by.strip()}".rjust(len(found.group()))
+
+    return _STRAIGHT.sub(partial, text)
 
 
 def _plain_letter(found: re.Match[str]) -> str:
@@ -149,6 +181,7 @@ class GivenFunctions:
             known = with_place_of_body(self.keys, self.scope)
             known = with_angular_momenta(self.keys, known) if self.asked == "pairs" else known
             plain, slopes = self._without_slopes(_SCRIPT.sub(_plain_letter, text), letters)
+            plain = plain if known is self.scope else with_speeds(plain)
             plain, crosses = without_cross_products(plain, self.keys, self.scope)
             put = {
                 name: (sp.Dummy(name, real=True), f) for name, f in {**letters, **slopes, **crosses}.items()

@@ -22,7 +22,13 @@ if TYPE_CHECKING:
 
     from canon.expression.text.scope import Scope
 
-__all__ = ["vectors_in", "with_angular_momenta", "with_place_of_body", "without_cross_products"]
+__all__ = [
+    "vectors_in",
+    "with_angular_momenta",
+    "with_place_of_body",
+    "with_speeds",
+    "without_cross_products",
+]
 
 _AXES = ("x", "y", "z")
 _CROSS = re.compile(
@@ -32,6 +38,12 @@ _CROSS = re.compile(
 _DRESS = re.compile(r"\\(?:vec|mathbf|boldsymbol|bm|left|right|[,;:! ])(?![A-Za-z])|[\s{}\u20d7]")
 _VECTOR = re.compile(r"(?P<factor>.*?)(?P<vector>\\dot\s?r|r\u0307|ṙ|[rpv])")
 _BOLD = r"\\(?:vec|mathbf|boldsymbol|bm)(?![A-Za-z])"
+_SPEED = re.compile(
+    r"(?P<bar>\\[lr]?vert\s?|\|)?"
+    rf"(?:\\dot\s?\{{?\s?{_BOLD}\s?\{{?\s?r\s?\}}{{0,2}}|{_BOLD}\s?\{{?\s?(?:\\dot\s?\{{?\s?r\s?\}}?|v)\s?\}}?)"
+    r"(?(bar)\s?(?:\\r?vert(?![A-Za-z])|\|))\s?(?=\^\s?\{?2)"
+)
+"""A velocity as a vector, with or without bars, before a square."""
 _ARROW = re.compile(
     rf"\\[dt]?frac\s?\{{\s?d(?P<order>\s?\^\s?(?:2|\{{\s?2\s?\}}))?\s?{_BOLD}\s?\{{?\s?r\s?\}}?\s?\}}"
     r"\s?\{\s?dt(?(order)\s?\^\s?(?:2|\{\s?2\s?\}))\s?\}|"
@@ -191,7 +203,21 @@ def with_place_of_body(keys: Mapping[str, Any], scope: Scope) -> Scope:
     for axis, value in zip(_AXES, place, strict=False):
         first = time_derivative(value, q, scope.time)
         values |= {axis: value, f"{axis}_dot": first, f"{axis}_ddot": time_derivative(first, q, scope.time)}
+    values["v"] = sp.sqrt(
+        sp.Add(*(values[f"{axis}_dot"] ** 2 for axis, _ in zip(_AXES, place, strict=False)))
+    )
     return _with_values(scope, values)
+
+
+def with_speeds(text: str) -> str:
+    r"""Return a text with v for the velocity of a body as a vector, where it is squared.
+
+    Examples
+    --------
+    >>> with_speeds(r"\frac12 m\dot{\mathbf r}^2"), with_speeds(r"\frac12 m|\dot{\vec r}|^2"), with_speeds("m v²")
+    ('\\frac12 m v ^2', '\\frac12 m v ^2', 'm v²')
+    """
+    return _SPEED.sub(" v ", text)
 
 
 def _with_values(scope: Scope, values: Mapping[str, Expr]) -> Scope:
