@@ -21,7 +21,7 @@ from canon.expression.text.tokens import MAX_CHARACTERS, tokens
 if TYPE_CHECKING:
     from canon.expression.text.scope import Scope
 
-__all__ = ["is_prose", "without_prose"]
+__all__ = ["WORD", "end_of_words", "is_prose", "without_prose"]
 
 _QUOTED = r">(?!\s*[=>])(?=[^<>=!]*=)"
 """A sign of quoted mail, which stands before an equation; before anything else it says what is greater."""
@@ -29,17 +29,17 @@ _MARKS = re.compile(
     rf"\s*(?:(?:{_QUOTED}|[✅☑✔→⟶•▪⇒⟹∴]|=>|-{{1,2}}>|<=>|#{{1,6}}(?=\s))\s*)*(?:\*\*(?=[^\W\d_]{{2}}))?"
 )
 _BULLET = re.compile(r"\s*[-*]\s+")
-_WORD = (
+WORD = (
     r"(?:[Ss]i (?:ottiene|ha|trova|ricava|scrive)(?!\w)|(?:[Ee]qn?s?|[Ss]oln?|[Aa]ns)\.(?=[ :])"
     r"|(?:(?:[cdjlmst]|[CDJLMST]|[Qq]u)['’])?[^\W\d_]{2,}(?:['’][^\W\d_]{1,9})?(?:[.-][^\W\d_]+)*|[^\W\d_](?!['’]))"
 )
 _ELIDED = re.compile(r"^(?:[cdjlmst]|qu|all|dall|dell|nell|sull)['’](?=[^\W\d_]{2})", re.IGNORECASE)
 """French and Italian words before a vowel."""
 _HEADING = re.compile(
-    rf"(?P<words>{_WORD}(?:[ ,]{{1,3}}{_WORD}){{0,7}})(?: ?\(?\d{{1,2}}\)?)?[*_]{{0,2}}"
+    rf"(?P<words>{WORD}(?:[ ,]{{1,3}}{WORD}){{0,7}})(?: ?\(?\d{{1,2}}\)?)?[*_]{{0,2}}"
     r"(?: ?:(?![=:])[*_]{0,2}(?=[\s$\\(*])|\s*\n)\s*"
 )
-_LEADING_WORD = re.compile(rf"(?P<word>{_WORD})[,:]?(?:\s+|(?=\$|\\[\[(]))")
+_LEADING_WORD = re.compile(rf"(?P<word>{WORD})[,:]?(?:\s+|(?=\$|\\[\[(]))")
 _UPRIGHT = re.compile(
     r"\\(?:text|textrm|textbf|mathrm)\s?\{\s*(?P<words>[^\W\d_][^{}=\\$]{1,60})\}(?:\s|\\q?quad(?![A-Za-z])|\\[,;: ])*"
     r"(?=[^\s=+*/^-])"
@@ -54,7 +54,7 @@ _SENTENCE = re.compile(
 )
 """What may be said of a formula behind it: for whom it holds, what a letter is, what it is called."""
 _CALLED = re.compile(
-    rf"(?<=[\w)\]}}'′″²³$])(?:\s[—–]\s+|,?\s(?=(?:is|ist|est|es|è)\s))(?P<words>{_WORD}(?: {_WORD}){{1,9}})[\s.]*$"
+    rf"(?<=[\w)\]}}'′″²³$])(?:\s[—–]\s+|,?\s(?=(?:is|ist|est|es|è)\s))(?P<words>{WORD}(?: {WORD}){{1,9}})[\s.]*$"
 )
 """Words behind an equation, after a dash or *is*."""
 _LONGEST_SENTENCE = 240
@@ -86,7 +86,19 @@ def without_prose(text: str, scope: Scope) -> str:
         return text
     begin = _beginning(text, scope)
     end = _end(text, begin, scope)
-    return text if (begin, end) == (0, len(text)) else " " * begin + text[begin:end]
+    return text if (begin, end) == (0, len(text)) else re.sub(r"[^\n]", " ", text[:begin]) + text[begin:end]
+
+
+def end_of_words(text: str, scope: Scope) -> int:
+    """Return where the words before a formula end; 0 where none stand there.
+
+    Examples
+    --------
+    >>> from canon.expression.text.scope import Scope
+    >>> end_of_words("Equation of motion: x'' = 0", Scope()), end_of_words("x'' = 0", Scope())
+    (20, 0)
+    """
+    return _beginning(text, scope)
 
 
 def _beginning(text: str, scope: Scope) -> int:
@@ -115,7 +127,7 @@ def _heading_end(text: str, begin: int, scope: Scope) -> int:
     found = _HEADING.match(text, begin)
     if found is None or not (marked or ":" in found.group()):
         return begin
-    rest, said = text[found.end() :], re.findall(_WORD, found["words"])
+    rest, said = text[found.end() :], re.findall(WORD, found["words"])
     coordinates = [word for word in said if isinstance(scope.symbol(word), Coordinate)]
     others = [word for word in said if word not in coordinates]
     of_them = "=" in rest and all(word in rest for word in coordinates)
@@ -130,7 +142,7 @@ def _upright_end(text: str, begin: int, scope: Scope) -> int:
     found = _UPRIGHT.match(text, begin)
     if found is None:
         return begin
-    said = re.findall(_WORD, found["words"])
+    said = re.findall(WORD, found["words"])
     leads = found["words"].rstrip().endswith((",", ":")) or said[-1].lower() in LEADING
     return found.end() if leads and is_prose(said, scope) else begin
 
@@ -159,7 +171,7 @@ def _end(text: str, begin: int, scope: Scope) -> int:
     found = _SENTENCE.search(text, tail)
     if found is None or not re.search(r"[\w)\]}'′″²³$]$", text[begin : found.start()]):
         return _end_before_its_name(text, begin, tail, scope)
-    said = re.findall(_WORD, found["role"] or found["words"] or "all")
+    said = re.findall(WORD, found["role"] or found["words"] or "all")
     restricts = (
         found["symbol"] and _CONSTANT & {word.lower() for word in said} and _moves(found["symbol"], scope)
     )
@@ -174,7 +186,7 @@ def _moves(symbol: str, scope: Scope) -> bool:
 def _end_before_its_name(text: str, begin: int, tail: int, scope: Scope) -> int:
     """Return where an equation ends that is called one behind it; ``m is the mass`` says something of a letter."""
     called = _CALLED.search(text, tail) if "=" in text[begin:] else None
-    words = re.findall(_WORD, called["words"]) if called else []
+    words = re.findall(WORD, called["words"]) if called else []
     named = _EQUATION & {word.lower() for word in words}
     return called.start() if called and named and is_prose(words, scope) else len(text)
 

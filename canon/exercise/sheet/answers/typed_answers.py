@@ -38,6 +38,8 @@ from canon.exercise.sheet.left_sides import (
 )
 from canon.exercise.sheet.quantities.given_functions import with_partial_signs
 from canon.expression.parse import LanguageError
+from canon.expression.rows.plain_rows import plain_rows
+from canon.frozen_mapping import FrozenMapping
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -92,7 +94,26 @@ def typed_answers(claim: Claim, scope: Scope, fault: _Fault) -> TypedAnswers:
     Exception
         What ``fault`` makes, where a left side contradicts the question or a text holds more than is asked.
     """
-    return _Plain(claim, scope, fault).claim()
+    answer = [key for key in kind_of(claim.kind, claim.keys).answer if key not in _UNTOUCHED]
+    keys = {
+        key: _in_rows(key, value, scope, fault) if key in answer else value
+        for key, value in claim.keys.items()
+    }
+    return _Plain(replace(claim, keys=FrozenMapping(keys)), scope, fault).claim()
+
+
+def _in_rows(place: str, value: Any, scope: Scope, fault: _Fault) -> Any:
+    """Return what stands at a place without the bullets, labels and numbers of its rows."""
+    if isinstance(value, Mapping):
+        return {name: _in_rows(f"{place}.{name}", item, scope, fault) for name, item in value.items()}
+    if isinstance(value, list):
+        return [_in_rows(f"{place}[{i}]", item, scope, fault) for i, item in enumerate(value)]
+    if not isinstance(value, str):
+        return value
+    try:
+        return plain_rows(value, scope)
+    except LanguageError as error:
+        raise fault(place, error) from None
 
 
 class _Plain:

@@ -1,0 +1,32 @@
+"""Rows of an answer as they are typed: their numbers taken off before anything in them is read."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from canon.expression.rows.dashed_numbers import without_dashed_numbers
+from canon.expression.text.tokens import MAX_CHARACTERS
+
+if TYPE_CHECKING:
+    from canon.expression.text.scope import Scope
+
+__all__ = ["plain_rows"]
+
+
+def plain_rows(text: str, scope: Scope) -> str:
+    """Return an answer without what only sets its rows apart, every column where it was.
+
+    Raises
+    ------
+    LanguageError
+        Where a number may be a part of the formula.
+
+    Examples
+    --------
+    >>> from canon.expression.text.scope import Scope
+    >>> plain_rows("$x = 1$ -- (1)", Scope()).strip()
+    '$x = 1$'
+    """
+    if len(text) > MAX_CHARACTERS:
+        return text
+    return without_dashed_numbers(text, scope)

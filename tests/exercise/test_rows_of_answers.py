@@ -1,0 +1,114 @@
+"""Bullets, labels and numbers around the rows of an answer: each beside a wrong twin, and what is asked about."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from canon.exercise.explained_judgement import judgements
+from canon.exercise.sheet.sheet import claim_from
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+PENDULUM = {
+    "kind": "euler-lagrange",
+    "q": ["theta"],
+    "L": "l**2*theta_dot**2/2 + g*l*cos(theta)",
+    "parameters": {"g": "positive", "l": "positive"},
+}
+THROWN = {
+    "kind": "euler-lagrange",
+    "q": ["x", "y"],
+    "L": "m*(x_dot**2 + y_dot**2)/2 - k*x**2/2 - m*g*y",
+    "parameters": {"m": "positive", "k": "positive", "g": "positive"},
+}
+SPRING = {
+    "kind": "legendre-hamiltonian",
+    "q": ["x"],
+    "p": ["p"],
+    "L": "m*x_dot**2/2 - k*x**2/2",
+    "parameters": {"m": "positive", "k": "positive"},
+}
+RATES = {
+    "kind": "hamilton-equations",
+    "q": ["x"],
+    "p": ["p"],
+    "H": "p**2/(2*m) + k*x**2/2",
+    "parameters": {"m": "positive", "k": "positive"},
+}
+NUMBER = {"kind": "number", "value": "3", "tolerance": "1 %"}
+
+
+def judged(question: Mapping[str, object], **keys: object):
+    claim = claim_from({"id": "a", **question, **keys})
+    assert not claim.errors
+    return [judgement for judgement, _ in judgements(claim)][-1]
+
+
+def right_and_wrong(
+    question: Mapping[str, object], typed: str, signs: str = "-+", key: str = "claim"
+) -> None:
+    """Assert that a text holds with the first sign in place of ``@``, and fails with the second."""
+    for sign, status in zip(signs, ("holds", "fails"), strict=True):
+        found = judged(question, **{key: typed.replace("@", sign)})
+        assert found.status == status, (typed.replace("@", sign), found.known)
+
+
+def asked(question: Mapping[str, object], typed: str, said: str, key: str = "claim") -> None:
+    """Assert that a text is asked about."""
+    found = judged(question, **{key: typed})
+    assert found.status == "invalid", typed
+    assert said in found.known, (typed, found.known)
+
+
+@pytest.mark.parametrize(
+    "number",
+    ["-- (1)", "--- (i)", "— (1)", "-(i)", "- (1)", "– (2)", "... (1)", "…(3)", "- (2.1)", "-- (1a)", "-(ii)",
+     ".....(4)", "-- (a)", "-- (*)"],
+)  # fmt: skip
+def test_numbers_of_an_equation_whose_right_side_is_zero(number: str) -> None:
+    right_and_wrong(PENDULUM, f"θ'' @ (g/l) sin θ = 0 {number}", "+-")
+    right_and_wrong(PENDULUM, f"θ'' @ (g/l) sin θ = 0 {number}.", "+-")
+
+
+@pytest.mark.parametrize(
+    "number",
+    [r"\dots(1)$", r"\ldots (1)$", r"\cdots (2)$", r"\quad\dots(1)$", r"--- (1)$", r"-- (i)$", "$ (1)", "$ (ii)",
+     "$ -- (1)", "$ - (1)", "$ ... (1)", "$, (1)", "$. (3)", "$ \\dots (1)"],
+)  # fmt: skip
+def test_numbers_behind_a_formula_in_latex(number: str) -> None:
+    right_and_wrong(PENDULUM, rf"$\ddot\theta=@\frac gl\sin\theta {number}")
+
+
+def test_numbers_of_rows() -> None:
+    right_and_wrong(THROWN, "m x'' = @k x -- (1)\nm y'' = -m g -- (2)")
+    right_and_wrong(THROWN, "$m \\ddot x = @k x$ (1)\n$m \\ddot y = -m g$ (2)")
+    right_and_wrong(THROWN, "m x'' @ k x = 0 - (1)\nm y'' + m g = 0 - (2)", "+-")
+    right_and_wrong(THROWN, "m x'' = @k x ... (1); m y'' = -m g ... (2)")
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        "θ'' = -(g/l) sin θ - (1)",
+        "θ'' = -(g/l) sin θ - (i)",
+        "θ'' = -(g/l) sin θ - (2)",
+        "g = - sin θ θ'' l – (1)",
+    ],
+)
+def test_one_dash_before_a_number_is_asked_about(typed: str) -> None:
+    asked(PENDULUM, typed, "the number of this equation, or is it taken away")
+
+
+def test_dashes_before_numbers_of_values() -> None:
+    assert judged(NUMBER, claim="x = 3 -- (1)").status == "holds"
+    assert judged(NUMBER, claim="x = 2 -- (1)").status == "fails"
+    assert judged(NUMBER, claim="x = 4 -- (1)").status == "fails"
+    assert judged(NUMBER, claim="x = 4 — (1)").status == "fails"
+    assert judged(NUMBER, claim="4 - (1)").status == "holds"
+    assert judged(NUMBER, claim="1 - (1)").status == "fails"
+    for typed in ("x = 3 - (1)", "x = 4 - (1)"):
+        asked(NUMBER, typed, "or is it taken away")
+    asked(SPRING, "H = p²/2m + ½kx² - (1)", "or is it taken away", key="H")
