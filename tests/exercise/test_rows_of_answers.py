@@ -112,3 +112,58 @@ def test_dashes_before_numbers_of_values() -> None:
     for typed in ("x = 3 - (1)", "x = 4 - (1)"):
         asked(NUMBER, typed, "or is it taken away")
     asked(SPRING, "H = p²/2m + ½kx² - (1)", "or is it taken away", key="H")
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        r"\begin{align} x:\quad & m\ddot x = @kx\\ y:\quad & m\ddot y = -mg \end{align}",
+        r"\begin{align*} x: && m\ddot x &= @kx\\ y: && m\ddot y &= -mg \end{align*}",
+        r"\begin{array}{ll} x: & m\ddot x = @kx \\ y: & m\ddot y = -mg \end{array}",
+        r"\begin{cases} x: & m\ddot x = @kx \\ y: & m\ddot y = -mg \end{cases}",
+        r"$x$: $m\ddot x = @kx$; $y$: $m\ddot y = -mg$",
+        "$x$: $m\\ddot x = @kx$\n$y$: $m\\ddot y = -mg$",
+        r"x: m\ddot x = @kx \\ y: m\ddot y = -mg",
+        "$x:\\ m\\ddot x = @kx$\n$y:\\ m\\ddot y = -mg$",
+        "x-direction: m x'' = @kx\ny-direction: m y'' = -mg",
+        "x-component: $m\\ddot x = @kx$\ny-component: $m\\ddot y = -mg$",
+        "$x$-direction: $m\\ddot x = @kx$; $y$-direction: $m\\ddot y = -mg$",
+        r"\begin{align}\text{x-direction: } & m\ddot x = @kx\\ \text{y-direction: } & m\ddot y = -mg \end{align}",
+        r"\begin{align}\text{For } x: & m\ddot x = @kx\\ \text{For } y: & m\ddot y = -mg \end{align}",
+        "For $x$: $m\\ddot x = @kx$\nFor $y$: $m\\ddot y = -mg$",
+        "horizontal: m x'' = @kx\nvertical: m y'' = -mg",
+        "x: m x'' = @kx\ny: m y'' = -mg",
+        "x equation: m x'' = @kx; y equation: m y'' = -mg",
+    ],
+)
+def test_labels_of_rows(typed: str) -> None:
+    right_and_wrong(THROWN, typed)
+    right_and_wrong(THROWN, typed.replace("-mg", "#mg").replace("@", "-").replace("#", "@"))
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        r"$\theta$: $\ddot\theta=@\frac gl\sin\theta$",
+        r"\theta: \ddot\theta=@\frac gl\sin\theta",
+        "For θ: θ'' = @g/l sin θ",
+        "θ: θ'' = @g/l sin θ",
+        "θ-direction: θ'' = @g/l sin θ",
+    ],
+)
+def test_labels_of_one_equation(typed: str) -> None:
+    right_and_wrong(PENDULUM, typed)
+
+
+def test_a_name_before_a_colon_that_is_no_label_is_asked_about() -> None:
+    asked(THROWN, r"x:\quad m\ddot y = -mg \\ y:\quad m\ddot x = -kx", "is x: the label of this equation")
+    asked(PENDULUM, r"$\theta$: $g = 0$", "the label of this equation")
+
+
+@pytest.mark.parametrize(
+    "said", ["wrong: {}", "wrong equation: {}", "not: {}", "k = 0: {}", "no direction: {}"]
+)
+def test_other_words_before_a_colon_are_no_labels(said: str) -> None:
+    assert judged(PENDULUM, claim=said.format("θ'' = -(g/l) sin θ")).status in ("invalid", "fails")
+    formula = r"$\ddot\theta = -\frac gl\sin\theta$"
+    assert judged(PENDULUM, claim=said.format(formula)).status in ("invalid", "fails")

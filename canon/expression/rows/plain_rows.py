@@ -1,10 +1,11 @@
-"""Rows of an answer as they are typed: their numbers taken off before anything in them is read."""
+"""Rows of an answer as they are typed: their labels and numbers taken off before anything in them is read."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from canon.expression.rows.dashed_numbers import without_dashed_numbers
+from canon.expression.rows.row_labels import without_row_labels
 from canon.expression.text.tokens import MAX_CHARACTERS
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ def plain_rows(text: str, scope: Scope) -> str:
     Raises
     ------
     LanguageError
-        Where a number may be a part of the formula.
+        Where a label or a number may be a part of the formula.
 
     Examples
     --------
@@ -29,4 +30,5 @@ def plain_rows(text: str, scope: Scope) -> str:
     """
     if len(text) > MAX_CHARACTERS:
         return text
-    return without_dashed_numbers(text, scope)
+    text = without_dashed_numbers(text, scope)
+    return without_row_labels(text, scope)
