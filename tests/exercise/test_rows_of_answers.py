@@ -63,6 +63,124 @@ def asked(question: Mapping[str, object], typed: str, said: str, key: str = "cla
     assert said in found.known, (typed, found.known)
 
 
+FORMULA = r"\ddot\theta = @\frac{g}{l}\sin\theta"
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        "- ${}$", "* ${}$", "• ${}$", "– ${}$", "— ${}$", "+ ${}$", r"- \({}\)", r"- \[{}\]", "- $${}$$", "•${}$",
+        "a) - ${}$", "(1) - ${}$", "1. - ${}$", "Equation of motion:\n- ${}$", "Equation of motion:\n\n- ${}$.",
+        "- ${}$ (1)", "- ${}$,", "we get - ${}$", "so - ${}$", "therefore - ${}$", "The equation of motion is - ${}$",
+        "Equation of motion - ${}$", "Equation of motion: - ${}$", "- Equation of motion: ${}$", "EOM – ${}$",
+        "Answer — ${}$", "We find – ${}$", "  - ${}$", "The answer is — ${}$", "> - ${}$", "**Answer:** - ${}$",
+        "thus,\n- ${}$", "∴ - ${}$", "=> - ${}$", "- **θ'' = @(g/l) sin θ**", "- `θ'' = @(g/l) sin θ`", "-\t${}$",
+    ],
+)  # fmt: skip
+def test_a_mark_before_dollars_is_a_bullet(typed: str) -> None:
+    right_and_wrong(PENDULUM, typed.replace("{}", FORMULA))
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        "- $m\\ddot x = @kx$\n- $m\\ddot y = -mg$",
+        "* $m\\ddot x = @kx$\n* $m\\ddot y = -mg$",
+        "• $m\\ddot x = @kx$\n• $m\\ddot y = -mg$",
+        "+ $m\\ddot x = @kx$\n+ $m\\ddot y = -mg$",
+        "– $m\\ddot x = @kx$\n– $m\\ddot y = -mg$",
+        "The equations of motion:\n- $m\\ddot x = @kx$\n- $m\\ddot y = -mg$",
+        "- $m\\ddot x = @kx$\n\n- $m\\ddot y = -mg$",
+        "- x'' = @k/m x\n- y'' = -g",
+        "* x'' = @k/m x\n* y'' = -g",
+        "• x'' = @k/m x\n• y'' = -g",
+        "Equations:\n- x'' = @k/m x\n- y'' = -g",
+        "- x: m x'' = @k x\n- y: m y'' = -m g",
+        "1. - $m\\ddot x = @kx$\n2. - $m\\ddot y = -mg$",
+        "$m\\ddot x = @kx$\n- $m\\ddot y = -mg$",
+        "- \\(m\\ddot x = @kx\\)\n- \\(m\\ddot y = -mg\\)",
+        "- $m\\ddot x = @kx$,\n- $m\\ddot y = -mg$.",
+        "- $m\\ddot x = @kx$, - $m\\ddot y = -mg$",
+        "- $m\\ddot x = @kx$; - $m\\ddot y = -mg$",
+    ],
+)
+def test_several_rows_with_one_mark_are_a_list(typed: str) -> None:
+    right_and_wrong(THROWN, typed)
+
+
+@pytest.mark.parametrize(
+    "typed", ["- $\\frac{p^2}{2m}@\\frac12kx^2$", "The Hamiltonian is - $\\frac{p^2}{2m}@\\frac12kx^2$"]
+)
+def test_an_expression_in_dollars_behind_a_bullet(typed: str) -> None:
+    right_and_wrong(SPRING, typed, "+-", key="H")
+
+
+def test_components_behind_bullets() -> None:
+    said = {"q_dot": "- $\\frac{p}{m}$", "p_dot": "- $-kx$"}
+    assert judged(RATES, **said).status == "holds"
+    assert judged(RATES, **{**said, "p_dot": "- $kx$"}).status == "fails"
+    assert judged(RATES, **{**said, "q_dot": "- $-\\frac{p}{m}$"}).status == "fails"
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        "- θ'' = -(g/l) sin θ",
+        "– θ'' = (g/l) sin θ",
+        "a) - θ'' = -(g/l) sin θ",
+        "Equation of motion:\n- θ'' = -(g/l) sin θ",
+        "-$\\ddot\\theta = \\frac gl\\sin\\theta$",
+        "- $\\ddot\\theta$ = $\\frac gl\\sin\\theta$",
+        "- \\ddot\\theta = -\\frac gl\\sin\\theta",
+        "- -θ'' = (g/l) sin θ",
+        "∴ - θ'' = (g/l) sin θ",
+        "⇒ - θ'' = (g/l) sin θ",
+        r"\therefore - \ddot\theta = \frac gl\sin\theta",
+    ],
+)
+def test_a_dash_that_may_be_a_minus_is_asked_about(typed: str) -> None:
+    asked(PENDULUM, typed, "or a minus")
+
+
+@pytest.mark.parametrize(
+    "typed",
+    ["we get - θ'' = -(g/l) sin θ", "so - θ'' = (g/l) sin θ", "therefore – θ'' = (g/l) sin θ",
+     "The equation of motion is - θ'' = (g/l) sin θ", "Equation of motion: - θ'' = (g/l) sin θ"],
+)  # fmt: skip
+def test_a_dash_behind_words_that_lead_to_an_equation_is_asked_about(typed: str) -> None:
+    asked(PENDULUM, typed, "or is it a minus")
+
+
+@pytest.mark.parametrize(
+    "typed",
+    ["Equation of motion - θ'' = @(g/l) sin θ", "EOM – θ'' = @(g/l) sin θ", "Answer — θ'' = @(g/l) sin θ",
+     "Solution -- θ'' = @(g/l) sin θ", "Equation of motion - \\ddot\\theta = @\\frac gl\\sin\\theta"],
+)  # fmt: skip
+def test_a_dash_behind_a_title(typed: str) -> None:
+    right_and_wrong(PENDULUM, typed)
+
+
+@pytest.mark.parametrize(
+    "typed",
+    ["-θ'' = @(g/l) sin θ", "-\\ddot\\theta = @\\frac gl\\sin\\theta", "- \\frac gl\\sin\\theta = @\\ddot\\theta",
+     "− θ'' = @(g/l) sin θ", "$- \\ddot\\theta = @\\frac gl\\sin\\theta$",
+     "$$\n- \\ddot\\theta = @\\frac gl\\sin\\theta\n$$",
+     "θ'' =\n- (-1)*(@1)*(-g/l) sin θ", "so -θ'' = @(g/l) sin θ"],
+)  # fmt: skip
+def test_a_minus_stays_a_minus(typed: str) -> None:
+    right_and_wrong(PENDULUM, typed, "+-")
+
+
+def test_numbers_behind_a_dash() -> None:
+    for typed in ("- $3$", "- $-3$", "The answer is - $3$", "Answer - 3"):
+        asked(NUMBER, typed, "minus")
+    assert judged(NUMBER, claim="Answer — 3").status == "holds"
+    assert judged(NUMBER, claim="Answer — -3").status == "fails"
+    assert judged({**NUMBER, "value": "-3"}, claim="- 3").status == "holds"
+    assert judged({**NUMBER, "value": "-3"}, claim="Answer: - 3").status == "holds"
+    assert judged({**NUMBER, "value": "-3"}, claim="-$3$").status == "holds"
+
+
 @pytest.mark.parametrize(
     "number",
     ["-- (1)", "--- (i)", "— (1)", "-(i)", "- (1)", "– (2)", "... (1)", "…(3)", "- (2.1)", "-- (1a)", "-(ii)",
@@ -148,6 +266,7 @@ def test_labels_of_rows(typed: str) -> None:
         r"\theta: \ddot\theta=@\frac gl\sin\theta",
         "For θ: θ'' = @g/l sin θ",
         "θ: θ'' = @g/l sin θ",
+        r"- $\theta$: $\ddot\theta=@\frac gl\sin\theta$",
         "θ-direction: θ'' = @g/l sin θ",
     ],
 )

@@ -1,9 +1,10 @@
-"""Rows of an answer as they are typed: their labels and numbers taken off before anything in them is read."""
+"""Rows of an answer as they are typed: their bullets, labels and numbers taken off before anything in them is read."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from canon.expression.rows.bullets import without_bullets
 from canon.expression.rows.dashed_numbers import without_dashed_numbers
 from canon.expression.rows.row_labels import without_row_labels
 from canon.expression.text.tokens import MAX_CHARACTERS
@@ -20,15 +21,15 @@ def plain_rows(text: str, scope: Scope) -> str:
     Raises
     ------
     LanguageError
-        Where a label or a number may be a part of the formula.
+        Where a bullet, a label or a number may be a part of the formula.
 
     Examples
     --------
     >>> from canon.expression.text.scope import Scope
-    >>> plain_rows("$x = 1$ -- (1)", Scope()).strip()
+    >>> plain_rows("- $x = 1$ -- (1)", Scope()).strip()
     '$x = 1$'
     """
     if len(text) > MAX_CHARACTERS:
         return text
     text = without_dashed_numbers(text, scope)
-    return without_row_labels(text, scope)
+    return without_row_labels(without_bullets(text, scope), scope)
