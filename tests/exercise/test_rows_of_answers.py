@@ -286,3 +286,18 @@ def test_other_words_before_a_colon_are_no_labels(said: str) -> None:
     assert judged(PENDULUM, claim=said.format("θ'' = -(g/l) sin θ")).status in ("invalid", "fails")
     formula = r"$\ddot\theta = -\frac gl\sin\theta$"
     assert judged(PENDULUM, claim=said.format(formula)).status in ("invalid", "fails")
+
+
+@pytest.mark.parametrize(
+    "typed",
+    ["x'' @ (k/m)x = 0. y'' = -g.", "x'' @ (k/m)x = 0.  y'' + g = 0.", r"\ddot x @ \frac km x = 0. \ddot y = -g",
+     r"$\ddot x @ \frac km x = 0. \ddot y = -g$", "y'' = -2.0*g + 1.0*g + 0.0. x'' @ (k/m)x = 0."],
+)  # fmt: skip
+def test_a_sentence_ends_behind_a_number(typed: str) -> None:
+    right_and_wrong(THROWN, typed, "+-")
+
+
+def test_a_full_stop_that_may_belong_to_a_number() -> None:
+    asked(THROWN, "x'' + (k/m)x = 1. y'' = -g.", "or does a sentence end")
+    programs = {**PENDULUM, "L": "theta_dot**2/2 + 2*cos(theta)"}
+    right_and_wrong(programs, "1. theta'' = @2. sin(theta)")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from canon.expression.rows.bullets import without_bullets
 from canon.expression.rows.dashed_numbers import without_dashed_numbers
 from canon.expression.rows.row_labels import without_row_labels
+from canon.expression.rows.sentence_ends import with_sentences_apart
 from canon.expression.text.tokens import MAX_CHARACTERS
 
 if TYPE_CHECKING:
@@ -31,5 +32,5 @@ def plain_rows(text: str, scope: Scope) -> str:
     """
     if len(text) > MAX_CHARACTERS:
         return text
-    text = without_dashed_numbers(text, scope)
+    text = without_dashed_numbers(with_sentences_apart(text), scope)
     return without_row_labels(without_bullets(text, scope), scope)
