@@ -75,6 +75,7 @@ FORMULA = r"\ddot\theta = @\frac{g}{l}\sin\theta"
         "Equation of motion - ${}$", "Equation of motion: - ${}$", "- Equation of motion: ${}$", "EOM – ${}$",
         "Answer — ${}$", "We find – ${}$", "  - ${}$", "The answer is — ${}$", "> - ${}$", "**Answer:** - ${}$",
         "thus,\n- ${}$", "∴ - ${}$", "=> - ${}$", "- **θ'' = @(g/l) sin θ**", "- `θ'' = @(g/l) sin θ`", "-\t${}$",
+        "- (1) ${}$", "Result:- ${}$", "Hence —${}$",
     ],
 )  # fmt: skip
 def test_a_mark_before_dollars_is_a_bullet(typed: str) -> None:
@@ -134,6 +135,7 @@ def test_components_behind_bullets() -> None:
         "- \\ddot\\theta = -\\frac gl\\sin\\theta",
         "- -θ'' = (g/l) sin θ",
         "∴ - θ'' = (g/l) sin θ",
+        r"1 - $\ddot\theta=-\frac gl\sin\theta$",
         "⇒ - θ'' = (g/l) sin θ",
         r"\therefore - \ddot\theta = \frac gl\sin\theta",
     ],
@@ -145,7 +147,8 @@ def test_a_dash_that_may_be_a_minus_is_asked_about(typed: str) -> None:
 @pytest.mark.parametrize(
     "typed",
     ["we get - θ'' = -(g/l) sin θ", "so - θ'' = (g/l) sin θ", "therefore – θ'' = (g/l) sin θ",
-     "The equation of motion is - θ'' = (g/l) sin θ", "Equation of motion: - θ'' = (g/l) sin θ"],
+     "The equation of motion is - θ'' = (g/l) sin θ", "Equation of motion: - θ'' = (g/l) sin θ",
+     r"Hence -$\ddot\theta=\frac gl\sin\theta$", r"The answer is -$\ddot\theta=\frac gl\sin\theta$"],
 )  # fmt: skip
 def test_a_dash_behind_words_that_lead_to_an_equation_is_asked_about(typed: str) -> None:
     asked(PENDULUM, typed, "or is it a minus")
@@ -202,6 +205,7 @@ def test_numbers_behind_a_formula_in_latex(number: str) -> None:
 
 def test_numbers_of_rows() -> None:
     right_and_wrong(THROWN, "m x'' = @k x -- (1)\nm y'' = -m g -- (2)")
+    right_and_wrong(THROWN, "m x'' = @k x -- (1), m y'' = -m g -- (2)")
     right_and_wrong(THROWN, "$m \\ddot x = @k x$ (1)\n$m \\ddot y = -m g$ (2)")
     right_and_wrong(THROWN, "m x'' @ k x = 0 - (1)\nm y'' + m g = 0 - (2)", "+-")
     right_and_wrong(THROWN, "m x'' = @k x ... (1); m y'' = -m g ... (2)")
@@ -301,3 +305,85 @@ def test_a_full_stop_that_may_belong_to_a_number() -> None:
     asked(THROWN, "x'' + (k/m)x = 1. y'' = -g.", "or does a sentence end")
     programs = {**PENDULUM, "L": "theta_dot**2/2 + 2*cos(theta)"}
     right_and_wrong(programs, "1. theta'' = @2. sin(theta)")
+
+
+@pytest.mark.parametrize(
+    "said",
+    ["{} (pendulum)", "{} (exact)", "{} (nonlinear ODE)", "{} (small angles)", "{} (θ-direction)", "{} (ans)",
+     "{} (SHM).", "Ans. {}", "Q1: {}", "E–L: {}", "Euler–Lagrange equation: {}", "For θ: {}",
+     "Euler-Lagrange equations: {}", "Q 2a: {}", "Answer. {}", "Exercise 3: {}", "Ans.: {}", "Q1: {} (pendulum)"],
+)  # fmt: skip
+def test_remarks_around_a_row(said: str) -> None:
+    for formula in ("θ'' = @(g/l) sin θ", r"$\ddot\theta = @\frac gl\sin\theta$"):
+        right_and_wrong(PENDULUM, said.replace("{}", formula))
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "{} (wrong)",
+        "{} (not exact)",
+        "{} (minus)",
+        "{} (twice)",
+        "{} (no pendulum)",
+        "{} (wrong direction)",
+        "{} (no direction)",
+        "{} (not-direction)",
+        "{} (anti direction)",
+    ],
+)
+def test_other_remarks_are_left(said: str) -> None:
+    for formula in ("θ'' = -(g/l) sin θ", r"$\ddot\theta = -\frac gl\sin\theta$"):
+        assert judged(PENDULUM, claim=said.replace("{}", formula)).status == "invalid"
+
+
+def test_remarks_of_declared_letters_are_factors() -> None:
+    letters = {"kind": "equality-only", "lhs": "x*a*n*s", "parameters": dict.fromkeys("xans", "real")}
+    assert judged(letters, rhs="x*(ans)").status == "holds"
+    assert judged(letters, rhs="x (ans)").status != "fails"
+
+
+def test_remarks_behind_rows() -> None:
+    right_and_wrong(THROWN, "$m\\ddot x = @kx$ (x-direction)\n$m\\ddot y = -mg$ (y-direction)")
+    right_and_wrong(THROWN, "m x'' = @k x (horizontal)\nm y'' = -m g (vertical)")
+    assert judged(NUMBER, claim="3 (exact)").status == "holds"
+    assert judged(NUMBER, claim="4 (exact)").status == "fails"
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        r"\begin{enumerate}\item $m\ddot x = @kx$ \item $m\ddot y = -mg$\end{enumerate}",
+        "\\begin{itemize}\n\\item $m\\ddot x = @kx$\n\\item $m\\ddot y = -mg$\n\\end{itemize}",
+        r"\begin{enumerate}[(a)]\item[(a)] $m\ddot x = @kx$ \item[(b)] $m\ddot y = -mg$\end{enumerate}",
+        "m x'' = \u2010k x\nm y'' = @m g".replace("\u2010", "-"),
+        "m x\u200b'' = @k x\u200b; m y'' = \u2010m g",
+        "m x'' = @\u00adk x; m y'' = \u2011m g",
+        "m x'' = \u2011k x; m y'' = @m g",
+        r"\mathbf{m\ddot x = @kx, \quad m\ddot y = -mg}",
+        "- \\item $m\\ddot x = @kx$\n- \\item $m\\ddot y = -mg$",
+        r"{\color{red} m\ddot x = @kx, \quad m\ddot y = -mg}",
+    ],
+)
+def test_dress_of_rows(typed: str) -> None:
+    right_and_wrong(THROWN, typed)
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [r"\mathbf{\ddot\theta=@\frac gl\sin\theta}", r"$\boldsymbol{\ddot\theta=@\frac gl\sin\theta}$",
+     r"{\color{red}\ddot\theta=@\frac gl\sin\theta}", r"${\color{blue}\ddot\theta=@\frac gl\sin\theta}$",
+     r"\cancel{m}l\ddot\theta=@\cancel{m}g\sin\theta", r"$\cancel{l}\ddot\theta l=@\cancel{l}g\sin\theta$",
+     r"\begin{enumerate}\item $\ddot\theta=@\frac gl\sin\theta$\end{enumerate}"],
+)  # fmt: skip
+def test_dress_of_one_equation(typed: str) -> None:
+    right_and_wrong(PENDULUM, typed)
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [r"\cancel{m}l\ddot\theta + g=-\cancel{m}g\sin\theta", r"\cancel{m}l\ddot\theta=-g\sin\theta",
+     r"\cancel{m}l\ddot\theta=-\cancel{n}g\sin\theta", r"\cancel{l\ddot\theta}+\ddot\theta l=-g\sin\theta"],
+)  # fmt: skip
+def test_what_is_struck_out_otherwise_is_not_read(typed: str) -> None:
+    assert judged(PENDULUM, claim=typed).status == "invalid"

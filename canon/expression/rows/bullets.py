@@ -40,9 +40,11 @@ _RATE_FIRST = re.compile(
 _EQUALS = re.compile(r"(?<![<>!:])=")
 _LED = re.compile(
     r"^(?P<words>[ \t>*_#]*[^\W\d_](?:[^\W\d_]|['’.,:*_ \t]|(?<=[^\W\d_])[-–](?=[^\W\d_])){1,120}?)(?<=[\w:.,*])"
-    r"[ \t]+(?P<dash>-{1,3}|[–—])[ \t]+(?P<rest>\S[^\n]*)$",
+    r"(?:[ \t]+|(?<=:))(?P<dash>-{1,3}|[–—])(?:(?P<gap>[ \t]+)|(?=\$|\\[(\[]))(?P<rest>\S[^\n]*)$",
     re.MULTILINE,
 )
+_NUMBER_FIRST = re.compile(r"^(?P<mark>[ \t]*\d{1,2}[ \t]+[-–])[ \t]+(?P<rest>\S[^\n]*)", re.MULTILINE)
+_LABELLED = re.compile(r"\(?(?:\d{1,2}|[a-h]|i{1,3})[).][ \t]+(?=\S)")
 _AFTER_ANOTHER = re.compile(r"(?<=[$)\]][,;])(?P<gap>[ \t]+)(?P<mark>[-–—*•])(?=[ \t]+(?P<rest>\S))")
 """A mark behind a formula and a comma."""
 _MARKED = re.compile(r"(?P<mark>\*\*|`)[^\n]+(?P=mark)[\s.]*$")
@@ -70,6 +72,10 @@ def without_bullets(text: str, scope: Scope) -> str:
     """
     text = _LED.sub(lambda found: _without_lead(found, scope), text)
     text = _AFTER_ANOTHER.sub(_without_mark, text)
+    for found in _NUMBER_FIRST.finditer(text):
+        formula = formula_at(text, found.start("rest"))
+        if formula is not None and _EQUALS.search(formula[0]):
+            raise _asked(found, found["mark"].strip(), "write 1. for the number of an equation")
     rows = [found for found in _ROW.finditer(text) if not is_inside(text, found.start("mark"))]
     if not rows:
         return text
@@ -103,7 +109,8 @@ def _is_bullet(found: re.Match[str], scope: Scope, several: bool) -> bool:
         return False
     if found["gap"] and end_of_label(found["rest"], scope) > 0:
         return True
-    formula = formula_at(text, found.start("rest"))
+    label = _LABELLED.match(found["rest"])
+    formula = formula_at(text, found.start("rest") + (label.end() if label else 0))
     if formula is not None:
         return _is_before_formula(found, *formula, several)
     return found["gap"] != "" and _is_before_plain(found, scope, several)
@@ -183,7 +190,10 @@ def _is_punctuation(found: re.Match[str], *, leads: bool, colon: bool) -> bool:
     if formula is not None:
         inside, end = formula
         whole = _LONGER.match(found.string[end : found.end()]) is not None
-        if _EQUALS.search(inside) or (whole and not _NUMERAL.fullmatch(inside)):
+        if found["gap"] is None and not _EQUALS.search(inside):
+            return False
+        apart = found["gap"] is not None or found["dash"] not in _SIGNS
+        if apart and (_EQUALS.search(inside) or (whole and not _NUMERAL.fullmatch(inside))):
             return True
     elif found["dash"] == "—" or (equation and not leads):
         return True

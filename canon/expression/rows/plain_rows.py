@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 
 from canon.expression.rows.bullets import without_bullets
 from canon.expression.rows.dashed_numbers import without_dashed_numbers
+from canon.expression.rows.row_dress import undressed
 from canon.expression.rows.row_labels import without_row_labels
+from canon.expression.rows.row_remarks import without_row_remarks
 from canon.expression.rows.sentence_ends import with_sentences_apart
 from canon.expression.text.tokens import MAX_CHARACTERS
 
@@ -17,7 +19,7 @@ __all__ = ["plain_rows"]
 
 
 def plain_rows(text: str, scope: Scope) -> str:
-    """Return an answer without what only sets its rows apart, every column where it was.
+    """Return an answer without what only sets its rows apart, every column where it was, zero widths left out.
 
     Raises
     ------
@@ -32,5 +34,6 @@ def plain_rows(text: str, scope: Scope) -> str:
     """
     if len(text) > MAX_CHARACTERS:
         return text
-    text = without_dashed_numbers(with_sentences_apart(text), scope)
+    text = without_dashed_numbers(with_sentences_apart(undressed(text)), scope)
+    text = without_row_remarks(text, scope)
     return without_row_labels(without_bullets(text, scope), scope)
