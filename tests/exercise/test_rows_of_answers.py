@@ -233,6 +233,19 @@ def test_dashes_before_numbers_of_values() -> None:
     assert judged(NUMBER, claim="1 - (1)").status == "fails"
     for typed in ("x = 3 - (1)", "x = 4 - (1)"):
         asked(NUMBER, typed, "or is it taken away")
+    for typed in ("3 -- (1)", "2 -- (1)", "2 --- (1)"):
+        asked(NUMBER, typed, "or is it taken away")
+    damped = {
+        **PENDULUM,
+        "L": "l**2*theta_dot**2/2 + g*l*cos(theta) + c*theta",
+        "parameters": dict.fromkeys("glc", "real"),
+    }
+    for typed in (
+        "l² θ'' + g l sin θ = 0 - (c)",
+        "l² θ'' + g l sin θ = 0 -- (c)",
+        "l² θ'' = -g l sin θ -(c)",
+    ):
+        asked(damped, typed, "or is it taken away")
     asked(SPRING, "H = p²/2m + ½kx² - (1)", "or is it taken away", key="H")
 
 

@@ -35,8 +35,9 @@ def test_what_stands_before_or_behind_is_no_prose(typed: str) -> None:
     assert status(EQUAL, rhs=typed) != "holds"
 
 
-def test_two_minus_signs_are_a_sum() -> None:
-    assert status({**EQUAL, "lhs": "x + 2"}, rhs="x --(2)") == "holds"
+def test_two_minus_signs_before_a_number_in_brackets_are_asked_about() -> None:
+    assert status({**EQUAL, "lhs": "x + 2"}, rhs="x --(2)") == "invalid"
+    assert status({**EQUAL, "lhs": "x + 2"}, rhs="x -(-2)") == "holds"
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,7 @@
 r"""Numbers of equations behind a dash, dots or dollars: ``… = 0 -- (1)``, ``… \ldots (i)``, ``$…$ (1)``.
 
-Two or three dashes and a long one never take away what is behind them; one dash does, except from nothing: nobody
-writes ``… = 0 - (1)`` of minus one. Elsewhere it is asked about.
+Two or three dashes and a long one behind an equation never take away what is behind them; one dash does, except from
+nothing: nobody writes ``… = 0 - (1)`` of minus one. Elsewhere, and where a letter is declared, it is asked about.
 """
 
 from __future__ import annotations
@@ -58,21 +58,30 @@ def _without(found: re.Match[str], scope: Scope) -> str:
     begins = [each.end() for each in _BEGINS.finditer(before)]
     row = before[begins[-1] if begins else 0 :]
     blank = " " * len(found.group())
-    if dash not in _MINUS:
-        return blank
     left, equals, right = row.rpartition("=")
+    outside = row.rstrip().endswith("$") and is_inside(text, found.start()) is False
+    name = found["name"]
+    if outside or dash[:1] not in _MINUS:
+        return blank
+    declared = scope.declares(name.lstrip("0123456789."))
+    if len(dash) > 1:
+        if equals and not declared:
+            return blank
+        raise _asked(found, f"{dash}{found['shown']}")
     if not equals or not left.strip(" $"):
         return found.group()
-    outside = right.rstrip().endswith("$") and is_inside(text, found.start()) is False
-    if right.strip(" $&.{}\\,~") == "0" or outside:
+    is_zero = right.strip(" $&.{}\\,~") == "0"
+    if not declared and (is_zero or (name.isalpha() and name != "i")):
         return blank
-    name = found["name"]
-    if name.isalpha() and name != "i" and not scope.declares(name):
-        return blank
-    shown = right.strip(" $")[-20:]
-    reason = f"is {found['shown']} the number of this equation, or is it taken away: {shown} - {name}?"
-    remedy = f"write {found['shown']} without the dash, or - {name} without the brackets"
-    raise LanguageError(text, found.start("dash") + 1, reason, remedy)
+    raise _asked(found, f"{right.strip(' $')[-20:]} - {name}")
+
+
+def _asked(found: re.Match[str], shown: str) -> LanguageError:
+    """Return the question whether a number behind a dash is that of the equation."""
+    number = found["shown"]
+    reason = f"is {number} the number of this equation, or is it taken away: {shown}?"
+    remedy = f"write {number} without the dash, or - {found['name']} without the brackets"
+    return LanguageError(found.string, found.start("dash") + 1, reason, remedy)
 
 
 def _without_outside(found: re.Match[str]) -> str:
