@@ -15,7 +15,7 @@ from tests.expression.test_typed_latex import agree
 
 WHICH_REACH = "the derivative of what?"
 SLOPE_BEFORE_A_FACTOR = re.compile(
-    r"\\frac\{(?:d|\\partial)(?:\^\{\d\})?\}\{[^{}]*(?:\{\d\}[^{}]*)*\} \w+\{\\left\([^()]*\\right\)\}"
+    r"\\frac\{(?:d|\\partial)(?:\^\{\d\})?\}\{[^{}]*(?:\{\d\}[^{}]*)*\} \\?\w+\{\\left\([^()]*\\right\)\}"
     r" ?(?![ +\-&,}]|\\right|\\\\|$)"
 )
 THETA, X, Y = (Coordinate(name, real=True) for name in ("theta", "x", "y_1"))

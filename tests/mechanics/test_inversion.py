@@ -58,6 +58,7 @@ def test_where_two_branches_meet_none_is_chosen():
 @example(["quadratic"], 38)
 @example(["cosh", "cosh", "cosh"], 35)
 @example(["square", "fraction", "quadratic"], 0)
+@example(["scale", "exp", "two functions"], 22)
 @given(st.lists(st.sampled_from(sorted(LAYERS)), min_size=1, max_size=3), st.integers(0, 50))
 def test_an_isolated_unknown_is_right_wherever_its_conditions_hold(layers, seed):
     f = x

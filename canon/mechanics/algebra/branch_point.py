@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 __all__ = ["BranchPoint", "branch_points", "far_from_principal"]
 
-_BITS = 192
+_BITS, _MOST_BITS = 192, 12_288
 
 
 @dataclass(frozen=True)
@@ -38,12 +38,12 @@ class BranchPoint:
     point: Mapping[Symbol, sp.Rational]
     meaning: Mapping[Symbol, Expr]
 
-    def value(self, f: Expr) -> Any:
-        """Return a ball around the value of f, or None where it has none."""
+    def value(self, f: Expr, bits: int = _BITS) -> Any:
+        """Return a ball around the value of f, or None where it has none, or so many bits show none."""
         whole = _without_functions(substitute(f, self.meaning))
         point = {s: self.point.get(s, _stand_in(s, self.point)) for s in whole.atoms(Symbol)}
         try:
-            with precision(_BITS):
+            with precision(bits):
                 return value(whole, point)
         except (Undefined, NotDecided, Unmodelled):
             return None
@@ -59,11 +59,12 @@ class BranchPoint:
 
     def agree(self, a: Expr, b: Expr) -> bool:
         """Whether both are equal there as far as the working precision tells."""
-        left, right = self.value(a), self.value(b)
-        if left is None or right is None:
-            return False
-        with precision(_BITS):
-            return bool((left - right).contains(acb(0)))
+        for bits in (_BITS, _MOST_BITS):  # as log(acos(1 − exp(−5000))), which takes many
+            left, right = self.value(a, bits), self.value(b, bits)
+            if left is not None and right is not None:
+                with precision(bits):
+                    return bool((left - right).contains(acb(0)))
+        return False
 
     def nearest_multiple(self, difference: Expr, period: Expr) -> sp.Integer | None:
         """Return the integer k with difference = k·period there, or None."""
