@@ -27,7 +27,6 @@ from canon.exercise.question.question import (
     Regular,
     Same,
     SameEquations,
-    Tells,
     more_than_zero,
     wrong_variables,
 )
@@ -102,12 +101,6 @@ def _energy_rate(reading: Reading, lagrangian: Lagrangian, rate: Expr) -> Iterat
     yield Same((Part("dE/dt", claimed, right, through, "energy_rate"),), domain, lambda: shown)
     yield from _valued_on_the_motion(reading, "energy_rate", lagrangian)
     written = [a for a in accelerations if claimed.has(a)]
-    if written and not reading.has("claim"):
-        of_any = time_derivative(lagrangian.jacobi_energy, lagrangian.q, lagrangian.t)
-        yield Tells(
-            (Same((Part("dE/dt", claimed, of_any),), reading.domain),),
-            "it is dE/dt of any motion, written out",
-        )
     yield Determines(lambda: (f"dE/dt stays open: it is written with {written[0]}",) if written else ())
 
 
