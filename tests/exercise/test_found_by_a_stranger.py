@@ -107,7 +107,7 @@ def test_numbers_of_numpy_are_numbers(mass: object) -> None:
 
 
 def test_starts_and_parameters_of_the_wrong_kind_are_told() -> None:
-    with pytest.raises(TypeError, match="y0 is 1: .* a state of one variable is a list of one number"):
+    with pytest.raises(TypeError, match=r"y0 is 1: .* a state of one variable is a list of one number"):
         propagate(lambda t, z: -z, (0, 1), 1)
     L = Lagrangian(x.dot**2 / 2 - x**2, [x])
     for system in (L, lambda t, z: -z):

@@ -12,7 +12,7 @@ from canon.exercise.diagnose import effort as effort_module
 from canon.exercise.diagnose.diagnosis_search import diagnosis
 from canon.exercise.diagnose.effort import BudgetSpent, Effort
 from canon.exercise.explained_judgement import judgements
-from canon.exercise.judging_process import Worker
+from canon.exercise.judging_process import HEARD, Worker
 from canon.exercise.question import generating_answer
 from canon.exercise.question.deadline import unless_spent
 from canon.exercise.sheet.reading import Reading
@@ -199,6 +199,6 @@ class Silent:
 def test_a_process_that_is_stopped_before_its_feedback_is_told(status, is_told):
     claim = WRONG[0]
     verdict = json.dumps({"id": claim.id, "kind": claim.kind, "status": status, "last": False}).encode()
-    judgement = Worker(Silent([verdict, b"ready"])).judge(claim)
+    judgement = Worker(Silent([verdict, HEARD, b"ready"])).judge(claim)
     assert judgement.status == status
     assert judgement.feedback == (SPENT.format(claim.budget) if is_told else "")

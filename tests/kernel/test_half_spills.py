@@ -50,7 +50,8 @@ def test_the_loop_that_was_spilled_by_half_is_made_without_parallel_scalars(monk
         samples=1,
     )
     machine = _older_processor()
-    assert any(may_spill_by_half(str(_with_parallel_scalars(ir, machine))) for ir in programs)
+    if llvm.llvm_version_info >= (22, 0, 0):  # LLVM 20 makes no such vectors of it
+        assert any(may_spill_by_half(str(_with_parallel_scalars(ir, machine))) for ir in programs)
     assert not any(may_spill_by_half(str(optimized(ir, machine))) for ir in programs)
 
 
