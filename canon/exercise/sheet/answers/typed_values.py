@@ -52,7 +52,9 @@ SIGNS = re.compile(r"\\pm(?![A-Za-z])|\\mp(?![A-Za-z])|±|∓|\+/[-−]")
 _ABOUT = re.compile(r"\b(?:about|approximately|approx\.?|roughly|ca\.|circa)(?=\s*[-0-9.])")
 _ARC = re.compile(r"(?i)arc|(?<![a-z])a(?:cos|sin|tan)|(?:cos|sin|tan)(?:⁻¹|\^\{?\(?-1)")
 """Inverse functions, whose values are angles."""
-_UNCERTAIN = re.compile(r"[0-9]*\.?[0-9]+\s*(?:±|\\pm|\+/-)\s*[0-9]*\.[0-9]+|[0-9]\.[0-9]+\([0-9]+\)")
+_UNCERTAIN = re.compile(
+    r"(?<![0-9.])(?:[0-9]++(?:\.[0-9]*+)?|\.[0-9]++)\s*+(?:±|\\pm|\+/-)\s*+[0-9]*+\.[0-9]++|[0-9]\.[0-9]++\([0-9]+\)"
+)
 
 
 @dataclass(frozen=True)
