@@ -25,7 +25,7 @@ from canon.study.energy_drift.drift_table import drift_table, with_error
 from canon.study.errors import StudyError
 from canon.study.kept.chunk_file import Chunk
 from canon.study.kept.keep_choice import chosen_functions
-from canon.study.motion.hamiltonian_text import MOST_NAMES, formula_from, formula_of
+from canon.study.motion.hamiltonian_text import MOST_NAMES, formula_from, formula_of, hamiltonian_of
 from canon.study.motion.observables import observables_of
 from canon.study.motion.system_table import system_from
 from canon.study.motion.system_text import system_text
@@ -90,8 +90,12 @@ def test_a_hamiltonian_that_no_text_spells_is_refused():
     tau, circle = sp.symbols("tau pi", real=True)
     with pytest.raises(StudyError, match="in a study the time is called t, not tau"):
         formula_of(Hamiltonian(QUARTIC.H + x * sp.cos(tau), [x], [x.momentum], tau))
-    with pytest.raises(StudyError, match="has no words for pi"):
+    with pytest.raises(StudyError, match="holds pi: give each a value"):
         formula_of(Hamiltonian(QUARTIC.H + circle * x, [x], [x.momentum]))
+    of_circle = formula_of(Hamiltonian(QUARTIC.H + circle * x, [x], [x.momentum]), parameters={"pi": 2.0})
+    assert {s.name for s in hamiltonian_of(of_circle).H.free_symbols} == {"x", "p_x", "pi"}
+    with pytest.raises(StudyError, match="zeta is not a function of the language"):
+        formula_of(Hamiltonian(QUARTIC.H + sp.zeta(x), [x], [x.momentum]))
 
 
 def test_a_system_of_a_class_of_ones_own_is_not_written():
