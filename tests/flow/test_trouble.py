@@ -216,7 +216,7 @@ NAN, INF = float("nan"), float("inf")
         ({"y0": [1.0, 0.0, 0.0]}, ValueError, r"shape \(3,\)"),
         ({"y0": []}, ValueError, r"shape \(0,\)"),
         ({"y0": np.zeros((2, 0))}, ValueError, r"shape \(2, 0\)"),
-        ({"y0": 1.0}, ValueError, r"shape \(\)"),
+        ({"y0": 1.0}, TypeError, "y0 is 1.0: give a number for each variable in a list"),
         ({"y0": [1j, 0]}, ValueError, "component of y0"),
         ({"t_span": (NAN, 1)}, ValueError, "t_span"),
         ({"t_span": (0, 0)}, ValueError, "no length"),
@@ -226,7 +226,7 @@ NAN, INF = float("nan"), float("inf")
         ({"samples": -3}, ValueError, "at least one"),
         ({"cadence": -1}, ValueError, "1 or more"),
         ({"precision": "half"}, ValueError, "compensated"),
-        ({"dense": True}, ValueError, "no polynomials"),
+        ({"dense": True}, ValueError, "polynomials to keep has Taylor.. only"),
     ],
 )
 def test_wrong_words_are_refused_at_once(wrong, error, message):
