@@ -160,8 +160,8 @@ def _check_events(task: Task) -> None:
     if task.dense and not task.method.engine.keeps_polynomials:
         if task.method.engine is FIXED_STEPS:
             raise ValueError(
-                f"dense=True: leave it out, for a motion by {task.method} has its states at all times as it is, "
-                "motion(4.123), by shorter steps; polynomials to keep has Taylor() only"
+                f"dense=True: leave it out: a motion by {task.method} can be asked at any time, motion(4.123), "
+                "which takes shorter steps from a sample; only Taylor() has polynomials to keep"
             )
         raise ValueError(
             f"dense=True: {task.method} has no polynomials to keep; Taylor() has, or name the times, times=[…]"

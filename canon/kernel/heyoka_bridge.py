@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from canon.expression.graph.number_systems import LONGDOUBLE
+from canon.expression.symbols.input_in_words import module_of
 from canon.kernel.heyoka_compiled import compiled_integrator
 from canon.kernel.program.program import exact_value
 
@@ -109,7 +110,7 @@ def _decimal(value: Fraction, digits: int) -> str:
 
 def is_heyoka_number(x: object) -> bool:
     """Tell whether a number is one of heyoka's own, wider than the platform's."""
-    return str(type(x).__module__).startswith("heyoka") and type(x).__name__ in ("real128", "real")
+    return module_of(type(x)).startswith("heyoka") and type(x).__name__ in ("real128", "real")
 
 
 def fraction_of(x: Any) -> Fraction:

@@ -50,6 +50,12 @@ def test_what_only_looks_like_the_rate_of_a_constant_is_none(other):
     assert judged("constant-of-motion", **PLANET, I=other).status == "fails"
 
 
+def test_with_a_parameter_called_d_a_quotient_by_dt_is_no_rate():
+    named = {**PLANET, "parameters": {**PLANET["parameters"], "d": "positive"}}
+    assert judged("constant-of-motion", **named, I="d/dt (r² φ') = 0").status != "holds"
+    assert judged("constant-of-motion", **named, I="d r² φ'").status == "holds"
+
+
 @pytest.mark.parametrize(
     ("answer", "due"),
     [

@@ -216,6 +216,8 @@ def test_numbers_of_rows() -> None:
     [
         "θ'' = -(g/l) sin θ - (1)",
         "θ'' = -(g/l) sin θ - (i)",
+        "θ'' = -(g/l) sin θ - (e)",
+        "θ'' = -(g/l) sin θ - (I)",
         "θ'' = -(g/l) sin θ - (2)",
         "g = - sin θ θ'' l – (1)",
     ],

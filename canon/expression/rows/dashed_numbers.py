@@ -26,6 +26,8 @@ _DASHED = re.compile(
 _OUTSIDE = re.compile(rf"(?:\$|\\\]|\\\))[.,]?(?P<all>[ \t~]*\({_NAME}\))(?=[\s.,]*(?:$|\n|;))")
 _LONGEST_ROW = 1_000
 _MINUS = "-–−"
+_NUMBERS = ("e", "i", "I")
+"""Letters that are numbers where they are not declared."""
 _BEGINS = re.compile(r"\n|(?<!\\);|\\\\|\\begin\{[a-z*]{3,14}\}")
 
 
@@ -59,7 +61,7 @@ def _without(found: re.Match[str], scope: Scope) -> str:
     row = before[begins[-1] if begins else 0 :]
     blank = " " * len(found.group())
     left, equals, right = row.rpartition("=")
-    outside = row.rstrip().endswith("$") and is_inside(text, found.start()) is False
+    outside = row.rstrip().endswith("$") and not is_inside(text, found.start())
     name = found["name"]
     if outside or dash[:1] not in _MINUS:
         return blank
@@ -71,7 +73,7 @@ def _without(found: re.Match[str], scope: Scope) -> str:
     if not equals or not left.strip(" $"):
         return found.group()
     is_zero = right.strip(" $&.{}\\,~") == "0"
-    if not declared and (is_zero or (name.isalpha() and name != "i")):
+    if not declared and (is_zero or (name.isalpha() and name not in _NUMBERS)):
         return blank
     raise _asked(found, f"{right.strip(' $')[-20:]} - {name}")
 

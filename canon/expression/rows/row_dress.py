@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import re
 
+from canon.expression.text.notation import closing_of
+
 __all__ = ["undressed"]
 
 _WITHOUT_WIDTH = re.compile("[\u200b\u200c\u00ad\u2060\ufeff]")
@@ -45,15 +47,8 @@ def _blanks(found: re.Match[str]) -> str:
 
 def _without_command(text: str, whole: re.Match[str]) -> str:
     """Return a text without the command around the whole of it, where that is an equation."""
-    depth = 0
-    for at in range(whole.start("command"), len(text)):
-        depth += (text[at] == "{") - (text[at] == "}")
-        if text[at] == "}" and depth == 0:
-            break
-    else:
-        return text
-    inside = text[whole.end() : at]
-    if "=" not in inside or not _END.fullmatch(text, at + 1):
+    at = closing_of(text, text.index("{", whole.start("command")))
+    if at is None or "=" not in (inside := text[whole.end() : at]) or not _END.fullmatch(text, at + 1):
         return text
     return f"{whole['before']}{' ' * (whole.end() - whole.end('before'))}{inside} {text[at + 1 :]}"
 

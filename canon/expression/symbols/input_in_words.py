@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["counted", "described", "given_kind", "listed", "of_sympy"]
+__all__ = ["counted", "described", "given_kind", "listed", "module_of", "of_sympy"]
 
 Kind = TypeVar("Kind")
 
@@ -81,15 +81,25 @@ def given_kind(x: Any, kinds: type[Kind] | tuple[type[Any], ...], name: str, ins
 def of_sympy(x: Any) -> bool:
     """Tell whether something is of a class of SymPy's, or of one derived from it.
 
-    The classes of its applied functions, ``dynamicsymbols`` among them, have no module themselves.
-
     Examples
     --------
     >>> import sympy
     >>> of_sympy(sympy.Symbol("x")), of_sympy("x")
     (True, False)
     """
-    return any(str(kind.__module__).partition(".")[0] == "sympy" for kind in type(x).__mro__)
+    return any(module_of(kind).partition(".")[0] == "sympy" for kind in type(x).__mro__)
+
+
+def module_of(kind: type) -> str:
+    """Return the name of the module of a class; SymPy's classes of applied functions, ``dynamicsymbols``, have none.
+
+    Examples
+    --------
+    >>> import sympy
+    >>> module_of(sympy.Symbol), module_of(type(sympy.Function("f")(1)))
+    ('sympy.core.symbol', '')
+    """
+    return kind.__module__ or ""
 
 
 def described(x: Any) -> str:

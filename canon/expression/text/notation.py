@@ -1,10 +1,10 @@
-"""Notation of a text: LaTeX, or the plain language."""
+"""Notation of a text: LaTeX or the plain language, and where its brackets close."""
 
 from __future__ import annotations
 
 import re
 
-__all__ = ["is_latex"]
+__all__ = ["closing_of", "is_latex"]
 
 _IS_LATEX = re.compile(r"[$∫∑∏]|\\(?:[A-Za-z]|[(\\{|,;:! ]|\[(?![A-Z][A-Za-z]{1,20}\]))|[\^_]\{")
 
@@ -22,3 +22,19 @@ def is_latex(text: str) -> bool:
     (True, True, False)
     """
     return _IS_LATEX.search(text) is not None
+
+
+def closing_of(text: str, begin: int) -> int | None:
+    """Return where the bracket that opens at a place closes, of whatever kind those inside are; None where it does not.
+
+    Examples
+    --------
+    >>> closing_of("f(a[b]) + (c)", 1), closing_of("(a", 0)
+    (6, None)
+    """
+    depth = 0
+    for at in range(begin, len(text)):
+        depth += (text[at] in "([{") - (text[at] in ")]}")
+        if depth == 0:
+            return at
+    return None

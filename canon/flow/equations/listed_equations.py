@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from canon.expression.graph.graph import Graph
+from canon.expression.symbols.input_in_words import module_of
 from canon.expression.symbols.symbol import time
 from canon.expression.symbols.user_input import given_expression, given_symbols
 from canon.flow.equations.first_order_motion import FirstOrderMotion, from_any_start
@@ -50,7 +51,7 @@ def is_heyoka_system(given: Any) -> bool:
     if not isinstance(given, list | tuple) or not given:
         return False
     return all(
-        isinstance(pair, tuple) and len(pair) == 2 and str(type(pair[0]).__module__).startswith("heyoka")  # pyright: ignore[reportUnknownArgumentType]
+        isinstance(pair, tuple) and len(pair) == 2 and module_of(type(pair[0])).startswith("heyoka")  # pyright: ignore[reportUnknownArgumentType]
         for pair in given  # pyright: ignore[reportUnknownVariableType]
     )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from canon.expression.symbols.input_in_words import module_of
 from canon.expression.symbols.symbol import velocity
 from canon.flow.equations.contact_motion import contact_motion
 from canon.flow.equations.lagrangian_motion import constraints_of, lagrangian_motion
@@ -102,7 +103,7 @@ def recognised(system: Any) -> RecognisedSystem:
     >>> found.state, found.parameters
     ((x, x_dot), (k,))
     """
-    if str(type(system).__module__).startswith("sympy.physics.mechanics"):
+    if module_of(type(system)).startswith("sympy.physics.mechanics"):
         system = from_sympy_mechanics(system)
     if is_heyoka_system(system):
         system = heyoka_field(system)

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from canon.expression.symbols.input_in_words import module_of
 from canon.mechanics.traced.standing_functions import OF_PYTHON, stands_for
 from canon.mechanics.traced.traced_array import interpolated, piecewise_polynomial
 
@@ -86,7 +87,7 @@ class _Exchange:
                 self.done[id(x)] = x.copy()
             case enum.Enum() | enum.EnumMeta():
                 pass
-            case type() if _is_module_of_user(x.__module__):
+            case type() if _is_class_of_user(x):
                 self._class(x)
             case _ if _is_of_user(x):
                 self._object(x)
@@ -212,19 +213,24 @@ class _Remembered:
 
 
 def _is_of_user(x: Any) -> bool:
-    kind = type(x)
     if isinstance(x, type | types.ModuleType | np.ndarray) or not hasattr(x, "__dict__"):
         return False
-    return _is_module_of_user(str(kind.__module__))
+    return _is_class_of_user(type(x))
 
 
-def _is_module_of_user(name: str) -> bool:
-    return name.partition(".")[0] not in (*sys.stdlib_module_names, "numpy", "scipy", "sympy", "canon")
+def _is_class_of_user(kind: type) -> bool:
+    return module_of(kind).partition(".")[0] not in (
+        *sys.stdlib_module_names,
+        "numpy",
+        "scipy",
+        "sympy",
+        "canon",
+    )
 
 
 def _is_spline(x: Any) -> bool:
     return (
-        str(type(x).__module__).startswith("scipy.interpolate")
+        module_of(type(x)).startswith("scipy.interpolate")
         and hasattr(x, "c")
         and hasattr(x, "x")
         and (np.ndim(x.c) == 2 and len(x.x) == np.shape(x.c)[1] + 1)

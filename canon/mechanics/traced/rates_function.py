@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
+from canon.expression.symbols.input_in_words import module_of
+
 __all__ = ["is_rates_function"]
 
 
 def is_rates_function(system: Any) -> bool:
     """Tell whether a system is a function f(t, y) and no value that canon knows."""
-    own = str(type(system).__module__).partition(".")[0] in (
+    own = module_of(type(system)).partition(".")[0] in (
         "canon",
         "sympy",
         "heyoka",

@@ -19,6 +19,7 @@ from canon.expression.symbols.expression_data import (
     symbol_data,
     symbol_from,
 )
+from canon.expression.symbols.input_in_words import module_of
 from canon.flow.equations.listed_equations import heyoka_field, is_heyoka_system
 from canon.flow.system.recognised_system import recognised
 from canon.mechanics.hamilton.poisson_system import PoissonSystem
@@ -160,7 +161,7 @@ def system_text(
     (('x', 'x_dot'), True)
     """
     called = name or type(system).__name__
-    if str(type(system).__module__).startswith("sympy.physics.mechanics"):
+    if module_of(type(system)).startswith("sympy.physics.mechanics"):
         system = from_sympy_mechanics(system)
     if is_heyoka_system(system):
         called, system = name or "equations", heyoka_field(system)

@@ -168,7 +168,7 @@ class OneExpression:
     def _without_rate_of_constant(self, place: str, sides: list[Side]) -> list[Side]:
         """Return what ``d/dt (m r² φ̇) = 0`` says is kept, where a constant of the motion is asked for."""
         of_motion = place == "I" or place.startswith("conserved")
-        kept = without_rate(sides, self.sides.scope.time.name) if of_motion else sides
+        kept = without_rate(sides, self.sides.scope) if of_motion else sides
         if len(kept) < len(sides):
             self.sides.passed.append(f"{place} is what stands behind d/dt: its rate is said to be zero")
         return [*kept]

@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from canon.expression.text.notation import is_latex
+from canon.expression.text.notation import closing_of, is_latex
 from canon.expression.text.statement import Side
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from canon.expression.text.scope import Scope
 
 __all__ = ["without_rate"]
 
@@ -22,27 +24,30 @@ _AROUND = re.compile(
     rf"|{_D}(?P<slashed>[(\[].*[)\]])\s*/\s*(?:{_D}t|\(\s*{_D}t\s*\)))[\s$.,;]*"
 )
 _SIZES = re.compile(r"\\(?:left|right|[bB]igg?[lr]?)(?![A-Za-z])")
-_CLOSING = {"(": ")", "[": "]", "{": "}"}
+_OPENING = ("(", "[")
 
 
-def without_rate(sides: Sequence[Side], time: str) -> Sequence[Side]:
+def without_rate(sides: Sequence[Side], scope: Scope) -> Sequence[Side]:
     r"""Return what is kept where an equation says that its rate is zero, else the sides as they are.
 
     Parameters
     ----------
     sides
         The sides of one equation.
-    time
-        The name of the time.
+    scope
+        The declared names: where d is one of them, or the time is not t, nothing is taken for a rate.
 
     Examples
     --------
-    >>> [side.text for side in without_rate([Side("d/dt (r² φ')"), Side("               0", "0")], "t")]
+    >>> from canon.expression.text.scope import Scope
+    >>> [side.text for side in without_rate([Side("d/dt (r² φ')"), Side("               0", "0")], Scope())]
     ["      r² φ' "]
-    >>> [side.text for side in without_rate([Side("d/dt (r²) φ'"), Side("               0", "0")], "t")]
+    >>> [side.text for side in without_rate([Side("d/dt (r²) φ'"), Side("               0", "0")], Scope())]
     ["d/dt (r²) φ'", '               0']
     """
-    if len(sides) != 2 or time != "t" or "0" not in (sides[0].said, sides[1].said):
+    if len(sides) != 2 or "0" not in (sides[0].said, sides[1].said):
+        return sides
+    if scope.declares("d") or scope.time.name != "t":
         return sides
     text = sides[sides[0].said == "0"].text
     bare = _SIZES.sub(lambda found: " " * len(found.group()), text)
@@ -52,21 +57,7 @@ def without_rate(sides: Sequence[Side], time: str) -> Sequence[Side]:
         begin, end = before.end(), len(bare.rstrip(" $.,;"))
     else:
         return sides
-    if not _is_one_bracket(bare[begin:end]):
+    if bare[begin : begin + 1] not in _OPENING or closing_of(bare, begin) != end - 1:
         return sides
     kept = f"{' ' * (begin + 1)}{bare[begin + 1 : end - 1]}{' ' * (len(bare) - end + 1)}"
     return [Side(f"${kept[1:]}" if is_latex(text) else kept)]
-
-
-def _is_one_bracket(text: str) -> bool:
-    """Tell whether a text is one bracket with what stands in it."""
-    open_: list[str] = []
-    for at, character in enumerate(text):
-        if character in _CLOSING:
-            open_.append(_CLOSING[character])
-        elif character in _CLOSING.values():
-            if not open_ or open_.pop() != character:
-                return False
-            if not open_:
-                return at == len(text) - 1
-    return False

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from canon.exercise.sheet.equations.matrix_products import equations_of_products
 from canon.expression.text.declared_names import key_of
+from canon.expression.text.notation import closing_of
 from canon.expression.text.scope import split
 
 if TYPE_CHECKING:
@@ -192,9 +193,7 @@ def _parted(text: str, sign: str) -> list[str]:
 
 def _closing(text: str, begin: int) -> int:
     """Return where a bracket ends."""
-    depth = 0
-    for at in range(begin, len(text)):
-        depth += (text[at] in "([{") - (text[at] in ")]}")
-        if depth == 0:
-            return at
-    raise _NoMatrixError
+    end = closing_of(text, begin)
+    if end is None:
+        raise _NoMatrixError
+    return end
